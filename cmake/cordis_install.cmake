@@ -8,7 +8,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/cordis)
 # The headers behind <cordis/world.h> and <cordis/scene_file.h>, and no others.
 set(engine_headers
   core/aligned_vector.h core/vec.h core/vector_width.h
-  description/drive.h description/energy.h description/integrator_kind.h description/network.h description/state_machine.h description/surface.h
+  description/drive.h description/energy.h description/integrator_kind.h description/network.h description/state_machine.h description/surface.h description/variable.h
   description/world_records.h
   expressions/instruction.h expressions/program.h expressions/program_term.h
   laws/law.h laws/law_field.h laws/law_term.h

@@ -10,6 +10,7 @@
 #include "sim_node/engine/core/float_mode.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/integrators/world_state.h"
+#include "sim_node/engine/variables.h"
 
 namespace cordis::engine {
 namespace {
@@ -61,6 +62,7 @@ void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
 
 StepReport World::step() noexcept {
   const FloatMode mode;
+  read_variables(network().description().variables, *this, state_->table.variables());
   return state_->step();
 }
 
@@ -104,6 +106,11 @@ std::uint32_t World::state_of(std::uint32_t state_link) const noexcept {
 double World::rest_length_of(std::uint32_t state_link) const noexcept {
   CORDIS_ASSERT(state_link < network().description().state_links.size());
   return state_->state_links.rest_length(state_link);
+}
+
+double World::age_of(std::uint32_t state_link) const noexcept {
+  CORDIS_ASSERT(state_link < network().description().state_links.size());
+  return state_->state_links.age(state_link, state_->step_count);
 }
 
 double World::tension_of(std::uint32_t state_link) const noexcept {

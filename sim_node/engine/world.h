@@ -85,6 +85,8 @@ class World {
 
   std::uint32_t state_of(std::uint32_t state_link) const noexcept;
   double rest_length_of(std::uint32_t state_link) const noexcept;  ///< [m]
+  /// Since the link entered its state [s].
+  double age_of(std::uint32_t state_link) const noexcept;
   /// Tension of the link in the last step [N], positive pulls the ends together; 0 before the first.
   double tension_of(std::uint32_t state_link) const noexcept;
   /// How often links of a state machine went from one state to another since step 0, over all of

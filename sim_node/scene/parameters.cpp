@@ -106,6 +106,7 @@ struct Parameters::Target {
       }
       if (change.kind == Change::Kind::kStateMachine) {
         change.state_machine = *state_machine_of(*own);
+        scene.liaisons->pool().bind_as(change.first, change.state_machine);
       } else {
         change.stiffness = own->stiffness;
         change.viscosity = own->viscosity;

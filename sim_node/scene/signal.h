@@ -8,53 +8,13 @@
 #include <vector>
 
 #include "sim_node/engine/connected_components.h"
+#include "sim_node/engine/description/variable.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/liaisons/link_law.h"
 
 namespace cordis::scene {
 
-/// What a signal measures. The first group is of a MAT, the second of a link, the third of a set, the
-/// last two of the scene.
-enum class Quantity : std::uint8_t {
-  kPosition,  ///< of a MAT along a direction [m]
-  kVelocity,  ///< of a MAT along a direction, over the last step [m/s]
-  kForce,     ///< of all links on a MAT along a direction, in the last step [N]
-  kSpeed,     ///< length of the velocity of a MAT [m/s]
-
-  kDistance,        ///< of the ends of a link [m]; signed in 1-D
-  kElongation,      ///< distance less rest length [m]
-  kElongationRate,  ///< rate of the distance, over the last step [m/s]
-  kTension,  ///< of a linear link K elongation + Z elongation rate, of the present positions; of a
-  ///< link with states its tension in the last step; positive pulls the ends together [N]
-  kState,       ///< number of the state of a link, in the order of the file
-  kRestLength,  ///< present rest length of a link with states [m]
-
-  kPieces,  ///< connected pieces of the MATs of a set liaison, of MATs, or of links with states
-  kBonds,   ///< pairs of a set liaison that are in another state than that of the start; links with
-            ///< states that are not idle
-
-  kChanges,  ///< of the states of all links, since step 0
-  kAwake,    ///< part of the masses that are not left out for being at rest, 0 to 1
-
-  kEnergy,            ///< kinetic + elastic + gravity [J]
-  kKineticEnergy,     ///< [J]
-  kElasticEnergy,     ///< [J]
-  kGravityEnergy,     ///< [J]
-  kDissipatedEnergy,  ///< taken by viscosity since step 0 [J]
-  kPortWork,          ///< brought in through the ports since step 0 [J]
-  kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
-};
-
-/// True for a quantity of a MAT along a direction.
-constexpr bool has_direction(Quantity quantity) noexcept {
-  return quantity <= Quantity::kForce;
-}
-constexpr bool is_of_mat(Quantity quantity) noexcept {
-  return quantity <= Quantity::kSpeed;
-}
-constexpr bool is_of_link(Quantity quantity) noexcept {
-  return quantity >= Quantity::kDistance && quantity <= Quantity::kRestLength;
-}
+using Quantity = engine::VariableKind;
 
 /// Sounds of a scene: as many as a sound file of several loudspeakers has.
 inline constexpr std::size_t kMaxSounds = 8;
@@ -66,14 +26,9 @@ enum class SignalRate : std::uint8_t {
 };
 
 /// A signal, compiled: nothing is looked up by name any more.
-struct Signal {
+struct Signal : engine::Variable {
   std::string name;
-  std::string unit;  ///< m, m/s, N, J, or empty
-  Quantity quantity = Quantity::kEnergy;
-  std::uint32_t index = 0;            ///< of the MAT, of the link in its kind, or of the set
-  LinkKind kind = LinkKind::kLinear;  ///< of the link
-  engine::Vec3 direction = engine::Vec3::Zero();  ///< of a MAT's quantity, unit length
-  double offset = 0.0;                            ///< subtracted from a position [m]: a port's rest
+  std::string unit;  ///< m, m/s, N, J, s, or empty
   SignalRate rate = SignalRate::kGesture;
   bool is_sound = false;    ///< it is a sound; then it is taken after each step
   double full_scale = 1.0;  ///< of a sound: the value, in its unit, that is the loudest
@@ -119,7 +74,6 @@ class SignalReader {
   std::vector<std::size_t> sounds_;
   bool wants_energy_ = false;
   bool wants_energy_by_step_ = false;
-  double mass_count_ = 0.0;  // of the network
 };
 
 }  // namespace cordis::scene

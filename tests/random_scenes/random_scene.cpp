@@ -20,7 +20,10 @@ enum class Matter { kAnything, kPotentials, kModes };
 class SceneWriter {
  public:
   explicit SceneWriter(std::uint32_t seed)
-      : random_(seed), friction_random_(~seed), random_of_drives_(seed ^ 0x5bd1e995U) {
+      : random_(seed),
+        friction_random_(~seed),
+        random_of_drives_(seed ^ 0x5bd1e995U),
+        random_of_variables_(seed ^ 0x2545f491U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -38,7 +41,8 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
-           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_;
+           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ +
+           "signals:\n  lively: {quantity: kinetic_energy}\n";
   }
 
  private:
@@ -341,10 +345,57 @@ class SceneWriter {
     }
   }
 
+  double variable_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_variables_()) / 4294967296.0;
+  }
+
+  /// A condition over something outside the link: time, a MAT, a port, another link, a signal.
+  std::string asked_outside() {
+    const std::string mat = fmt::format("p[{}]", random_of_variables_() % count_);
+    const std::string more = variable_between(0.0, 1.0) < 0.5 ? ">" : "<";
+    const double length = variable_between(-0.15, 0.15);
+    const double speed = 0.01 * std::pow(100.0, variable_between(0.0, 1.0));
+    switch (random_of_variables_() % 8) {
+      case 0:
+        return fmt::format("time_s {} {:.4g}", more, variable_between(0.0, 0.5));
+      case 1:
+        return fmt::format("{}.position_x_m {} {:.4g}", mat, more, length);
+      case 2:
+        return fmt::format("{}.speed_m_per_s {} {:.4g} and rising({}.velocity_x_m_per_s)", mat,
+                           more, speed, mat);
+      case 3:
+        return fmt::format("wall.position_x_m {} {:.4g}", more, length);
+      case 4:
+        if (has_port_) return fmt::format("hand.position_m {} {:.4g}", more, 0.1 * length);
+        [[fallthrough]];
+      case 5:
+        if (links_with_states_ > 0) {
+          const std::string link = fmt::format("s{}", random_of_variables_() % links_with_states_);
+          return fmt::format("{}.state == s1 and {}.age_s > {:.4g} or {}.force_n {} {:.4g}", link,
+                             link, 0.1 * std::abs(length), link, more, speed);
+        }
+        [[fallthrough]];
+      case 6:
+        return fmt::format("{}.force_x_n {} {:.4g}", mat, more, 10.0 * length);
+      default:
+        return fmt::format("lively {} {:.4g}", more, 1e-3 * speed);
+    }
+  }
+
+  /// A fifth of the conditions ask outside their link. Their numbers come from a source of their own.
+  std::string perhaps_asking_outside(const std::string& condition) {
+    if (variable_between(0.0, 1.0) > 0.2) return condition;
+    const std::string asked = asked_outside();
+    const double choice = variable_between(0.0, 1.0);
+    if (choice < 0.4) return asked;
+    return fmt::format("({}) {} ({})", condition, choice < 0.7 ? "and" : "or", asked);
+  }
+
   std::string exit(const std::string& target) {
     const std::string rest =
         one_of<const char*>({"", "", ", rest: here", ", rest: \"0.5 * (rest_m + distance_m)\""});
-    return fmt::format("{{to: {}, when: \"{}\"{}}}", target, condition(), rest);
+    return fmt::format("{{to: {}, when: \"{}\"{}}}", target, perhaps_asking_outside(condition()),
+                       rest);
   }
 
   /// A liaison in braces.
@@ -399,7 +450,8 @@ class SceneWriter {
   }
 
   void add_link(std::uint32_t l) {
-    liaisons_ += fmt::format("  l{}: {}\n", l, liaison());
+    const std::string law = liaison();
+    liaisons_ += fmt::format("  l{}: {}\n", l, law);
     const std::string a = mat_but("");
     std::string more;
     // Half of all keep the distance of the start.
@@ -409,6 +461,8 @@ class SceneWriter {
     if (has_rest && chance(0.5)) {
       more = fmt::format(", rest_m: {:.4g}", space_ == 1 ? between(-0.2, 0.3) : between(0.0, 0.3));
     }
+    if (law.find("states:") != std::string::npos)
+      more += fmt::format(", name: s{}", links_with_states_++);
     links_ +=
         fmt::format("  - {{liaison: l{}, between: [\"{}\", \"{}\"]{}}}\n", l, a, mat_but(a), more);
   }
@@ -527,12 +581,14 @@ class SceneWriter {
 
   std::mt19937 random_;
   std::mt19937 friction_random_;
-  std::mt19937 random_of_drives_;  // by itself: what a seed draws besides does not depend on it
+  std::mt19937 random_of_drives_;     // by itself: what a seed draws besides does not depend on it
+  std::mt19937 random_of_variables_;  // likewise
   bool may_rub_ = false;
   int space_ = 3;
   Matter matter_ = Matter::kAnything;
   std::uint32_t count_ = 1;
   bool has_port_ = false;
+  std::uint32_t links_with_states_ = 0;  // that have been written; each has a name
   std::string head_;
   std::string masses_;
   std::string port_;

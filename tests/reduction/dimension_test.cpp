@@ -61,6 +61,25 @@ TEST(Dimension, APlaneOf3DIsComputedIn2DToTheBit) {
   EXPECT_EQ(signals_after(scene, 500)[1], 0.3);
 }
 
+TEST(Dimension, AConditionSeesWhatNeverChangesToo) {
+  std::string text = with_latch(
+      in_a_plane("[0, 0, -9.81]", "  - {liaison: latch, between: [\"net[7]\", \"balls[0]\"]}\n"),
+      "net[7].position_y_m > 0.29 and net[7].position_z_m < 0.07");
+  text.replace(text.find("range: rest"), 11, "range_m: 0.04");
+  const scene::Scene whole = loaded(text);
+  const scene::Scene scene = reduced(text);
+  ASSERT_EQ(scene.space(), 2);
+  const auto opens_after = [](const scene::Scene& played) {
+    engine::World world(std::make_shared<const engine::Network>(played.network));
+    int steps = 0;
+    for (; steps < 500 && world.state_of(1) == 0; ++steps) world.step();
+    return steps;
+  };
+  EXPECT_EQ(opens_after(scene), opens_after(whole));
+  EXPECT_LT(opens_after(scene), 500);
+  EXPECT_GT(opens_after(scene), 1);
+}
+
 TEST(Dimension, ASceneThatMayLeaveItsPlaneStays) {
   std::string text = in_a_plane("[0, 0, -9.81]");
   text.replace(text.find("range: rest"), 11, "range_m: 0.04");

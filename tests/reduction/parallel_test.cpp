@@ -65,6 +65,15 @@ TEST(Parallel, ALinkOfASignalStays) {
   EXPECT_EQ(scene.network.links[1 - signal.index].viscosity, 0.03);
 }
 
+TEST(Parallel, ALinkOfAConditionStays) {
+  const scene::Scene scene = reduced(with_latch(
+      on_three_links(1, "  - {liaison: latch, between: [wall, bob]}\n"), "second.force_n > 1"));
+
+  ASSERT_EQ(scene.network.links.size(), 2u);
+  ASSERT_EQ(scene.network.variables.size(), 1u);
+  EXPECT_EQ(scene.network.links[scene.network.variables[0].index].stiffness, 10.0);
+}
+
 TEST(Parallel, ASignalIsStillOfItsLinkWhenThoseBeforeItAreGone) {
   const scene::Scene scene =
       reduced(on_three_links(1, "signals:\n  tension: {of: third, quantity: force}\n"));

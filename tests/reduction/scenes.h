@@ -36,6 +36,13 @@ inline std::string refusal_of(const std::string& text) {
   return problems.text();
 }
 
+/// The text of a scene with one liaison more, whose condition asks outside its links: `latch`.
+inline std::string with_latch(std::string text, const std::string& condition) {
+  text.insert(text.find("matter:"), "  latch: {states: {shut: {exits: [{to: open, when: \"" +
+                                        condition + "\"}]}, open: {final: true}}}\n");
+  return text;
+}
+
 /// The MATs of a name.
 inline scene::NamedRange matter(const scene::Scene& scene, const std::string& name) {
   for (const scene::NamedRange& range : scene.matter) {

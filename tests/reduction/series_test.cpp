@@ -127,6 +127,13 @@ TEST(Series, AMatOfASignalIsAnError) {
   EXPECT_NE(report.find("for a port, a signal, a set"), std::string::npos) << report;
 }
 
+TEST(Series, AMatOfAConditionIsAnError) {
+  const std::string latch = "  - {liaison: latch, between: [wall, bob]}\n";
+  const std::string report =
+      refusal_of(with_latch(row_text("0", kSprings + latch, 1000), "joint[0].position_m > 0.1"));
+  EXPECT_NE(report.find("or a link with states asks for it"), std::string::npos) << report;
+}
+
 /// A row of springs without rest length along the x axis of a plane, with gravity across it or not.
 std::string row_in_a_plane(const std::string& gravity) {
   return R"(cordis: 1

@@ -120,6 +120,13 @@ class Fingerprint {
     add(drive.origin);
     for (const double value : drive.turn) add(value);
   }
+  void add(const Variable& variable) {
+    add(static_cast<std::uint64_t>(variable.quantity));
+    add(variable.index);
+    add(static_cast<std::uint64_t>(variable.kind));
+    add(variable.direction);
+    add(variable.offset);
+  }
   template <class Items>
   void add_all(const Items& items) {
     add(static_cast<std::uint64_t>(items.size()));
@@ -181,6 +188,7 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(8, description.surfaces);
   fingerprint.add_if_any(9, description.time_functions);
   fingerprint.add_if_any(10, description.drives);
+  fingerprint.add_if_any(11, description.variables);
   if (description.freeze_tolerance > 0.0) {
     fingerprint.add(std::uint64_t{7});
     fingerprint.add(description.freeze_tolerance);

@@ -163,6 +163,25 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   check_surfaces_of(description, set, name);
 }
 
+void check_variable(const NetworkDescription& description, const Variable& variable,
+                    const std::string& name) {
+  const auto list_size = [&] {
+    if (is_of_mat(variable.quantity)) return description.mats.size();
+    if (variable.kind == LinkKind::kLinear) return description.links.size();
+    return variable.kind == LinkKind::kState ? description.state_links.size()
+                                             : description.maxwell_links.size();
+  };
+  require(!is_count(variable.quantity), name + ": quantity", "no count of pieces or bonds");
+  if (is_of_mat(variable.quantity) || is_of_link(variable.quantity)) {
+    require(variable.index < list_size(), name + ": what it is of", "in the network");
+  }
+  if (is_of_link(variable.quantity) && variable.quantity >= VariableKind::kState) {
+    require(variable.kind == LinkKind::kState, name + ": its link", "one with states");
+  }
+  require(variable.direction.allFinite(), name + ": direction", "finite");
+  require(std::isfinite(variable.offset), name + ": offset", "finite");
+}
+
 template <class Item, class Check>
 void check_each(const NetworkDescription& description, const std::vector<Item>& items,
                 const char* kind, Check check_one) {
@@ -204,13 +223,15 @@ void check(const NetworkDescription& description) {
     const StateMachine& state_machine = description.state_machines[b];
     check_state_machine(state_machine,
                         "state machine " + std::to_string(b) +
-                            (state_machine.name.empty() ? "" : " '" + state_machine.name + "'"));
+                            (state_machine.name.empty() ? "" : " '" + state_machine.name + "'"),
+                        description.variables.size());
   }
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
   check_each(description, description.surfaces, "surface", check_surface);
   check_each(description, description.sets, "set", check_set);
   check_drives(description);
+  check_each(description, description.variables, "variable", check_variable);
   require(is_finite_and_at_least_zero(description.freeze_tolerance), "tolerance of freezing",
           "finite and >= 0");
   for (const std::uint32_t mat : description.kept_awake) {
@@ -226,6 +247,7 @@ std::size_t NetworkDescription::mass_count() const noexcept {
 
 Network::Network(NetworkDescription description) : description_(std::move(description)) {
   check(description_);
+  mass_count_ = description_.mass_count();
   fingerprint_ = fingerprint_of(description_);
 }
 

@@ -9,6 +9,7 @@
 #include "sim_node/engine/description/integrator_kind.h"
 #include "sim_node/engine/description/state_machine.h"
 #include "sim_node/engine/description/surface.h"
+#include "sim_node/engine/description/variable.h"
 
 namespace cordis::engine {
 
@@ -109,7 +110,8 @@ struct NetworkDescription {
   std::vector<SetLiaison> sets;
   std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
   std::vector<TimeFunction> time_functions;
-  std::vector<Drive> drives;  ///< in the order of their MATs, at most one each
+  std::vector<Drive> drives;        ///< in the order of their MATs, at most one each
+  std::vector<Variable> variables;  ///< that conditions ask for: Operation::kVariable
 
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;
@@ -131,6 +133,7 @@ class Network {
   double step() const noexcept { return description_.step; }  ///< dt [s]
   std::size_t mat_count() const noexcept { return description_.mats.size(); }
   std::size_t link_count() const noexcept { return description_.links.size(); }
+  std::size_t mass_count() const noexcept { return mass_count_; }
 
   /// 64-bit hash of the whole description: equal for networks assembled from the same values in the
   /// same order.
@@ -138,6 +141,7 @@ class Network {
 
  private:
   NetworkDescription description_;
+  std::size_t mass_count_;
   std::uint64_t fingerprint_;
 };
 

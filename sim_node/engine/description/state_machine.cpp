@@ -1,6 +1,7 @@
 // sim_node/engine/description/state_machine.cpp
 #include "sim_node/engine/description/state_machine.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sim_node/engine/core/require.h"
@@ -24,9 +25,9 @@ std::vector<std::uint32_t> slot_uses(const Program& program) {
   return slots;
 }
 
-void check_exit(const StateMachine& state_machine, const Transition& exit,
-                const std::string& name) {
-  check_program(exit.when, name + ": condition");
+void check_exit(const StateMachine& state_machine, const Transition& exit, const std::string& name,
+                std::size_t variable_count) {
+  check_program(exit.when, name + ": condition", variable_count);
   require(exit.target < state_machine.states.size(), name + ": target",
           "a state of the state machine");
   require(static_cast<std::size_t>(exit.triggered) < kQuantityCount, name + ": trigger",
@@ -72,13 +73,20 @@ void check_friction(const Friction& friction, const std::string& name) {
 
 }  // namespace
 
-void check_state_machine(const StateMachine& state_machine, const std::string& name) {
+bool asks_for_variable(const StateMachine& state_machine) noexcept {
+  return std::ranges::any_of(state_machine.exits,
+                             [](const Transition& exit) { return asks_for_variable(exit.when); });
+}
+
+void check_state_machine(const StateMachine& state_machine, const std::string& name,
+                         std::size_t variable_count) {
   require(!state_machine.states.empty(), name + ": number of states", "at least 1");
   require(state_machine.states.size() <= kMaxStates, name + ": number of states", "at most 64");
   require(state_machine.start < state_machine.states.size(), name + ": start",
           "a state of the state machine");
   for (std::size_t e = 0; e < state_machine.exits.size(); ++e) {
-    check_exit(state_machine, state_machine.exits[e], name + ": exit " + std::to_string(e));
+    check_exit(state_machine, state_machine.exits[e], name + ": exit " + std::to_string(e),
+               variable_count);
   }
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const LinkState& state = state_machine.states[s];

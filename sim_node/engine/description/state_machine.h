@@ -89,9 +89,15 @@ double touch_distance(const StateMachine& state_machine) noexcept;
 /// The most states a state machine may have.
 inline constexpr std::size_t kMaxStates = 64;
 
+/// True if a condition asks for a variable of the network: then it may come true whatever its own
+/// link does.
+bool asks_for_variable(const StateMachine& state_machine) noexcept;
+
+/// @param variable_count  how many variables its conditions may ask for
 /// @throws std::invalid_argument beginning with `name`, with the first thing that is wrong: no
 /// state, a value out of range, an exit or a target that does not exist, a program that is not
 /// well-formed, a slot used twice by the exits of a state.
-void check_state_machine(const StateMachine& state_machine, const std::string& name);
+void check_state_machine(const StateMachine& state_machine, const std::string& name,
+                         std::size_t variable_count = 0);
 
 }  // namespace cordis::engine

@@ -65,19 +65,22 @@ enum class Operation : std::uint8_t {
   kSin,
   kCos,
   kTanh,
-  kPower,      ///< of two values, the lower on the stack to the power of the upper
-  kWholePower  ///< to the power of Instruction::constant, a whole number of at most
-               ///< kMaxWholePower
+  kPower,       ///< of two values, the lower on the stack to the power of the upper
+  kWholePower,  ///< to the power of Instruction::constant, a whole number of at most
+                ///< kMaxWholePower
+  kVariable     ///< pushes the value that a Variable of the network had as the last step ended;
+                ///< Instruction::slot is its number
 };
-inline constexpr std::size_t kOperationCount = 31;
-static_assert(static_cast<std::size_t>(Operation::kWholePower) + 1 == kOperationCount);
+inline constexpr std::size_t kOperationCount = 32;
+static_assert(static_cast<std::size_t>(Operation::kVariable) + 1 == kOperationCount);
 
 struct Instruction {
   Operation operation = Operation::kConstant;
   Quantity quantity = Quantity::kDistance;
   double constant = 0.0;   ///< of kConstant and kWholePower
   std::uint32_t slot = 0;  ///< of kRising and kFalling: where the link keeps the last value; not
-                           ///< shared by two instructions of one state's exits
+                           ///< shared by two instructions of one state's exits. Of kVariable its
+                           ///< number
 };
 
 /// The most values a program may have on its stack.

@@ -12,7 +12,8 @@
 namespace cordis::engine {
 namespace {
 
-void check_instruction(const Instruction& instruction, const std::string& name) {
+void check_instruction(const Instruction& instruction, const std::string& name,
+                       std::size_t variable_count) {
   require(static_cast<std::size_t>(instruction.operation) < kOperationCount, name + ": operation",
           "a known one");
   switch (instruction.operation) {
@@ -34,6 +35,9 @@ void check_instruction(const Instruction& instruction, const std::string& name) 
       static_assert(kMaxSlots == 16);
       require(instruction.slot < kMaxSlots, name + ": slot", "below 16");
       break;
+    case Operation::kVariable:
+      require(instruction.slot < variable_count, name + ": variable", "one that it may ask for");
+      break;
     default:
       break;
   }
@@ -49,6 +53,7 @@ std::size_t operand_count(Operation operation) noexcept {
   switch (operation) {
     case Operation::kConstant:
     case Operation::kQuantity:
+    case Operation::kVariable:
       return 0;
     case Operation::kNegate:
     case Operation::kAbs:
@@ -93,6 +98,11 @@ bool asks_for(const Program& program, Quantity quantity) noexcept {
   });
 }
 
+bool asks_for_variable(const Program& program) noexcept {
+  return std::ranges::any_of(
+      program.code, [](const Instruction& each) { return each.operation == Operation::kVariable; });
+}
+
 bool has_edge(const Program& program) noexcept {
   return std::any_of(program.code.begin(), program.code.end(),
                      [](const Instruction& each) { return is_edge(each.operation); });
@@ -100,6 +110,7 @@ bool has_edge(const Program& program) noexcept {
 
 double value_of(const Program& program, const LinkQuantities& now, const LinkQuantities* before,
                 double edge) noexcept {
+  CORDIS_ASSERT(!asks_for_variable(program));
   std::array<double, kMaxStack> stack;
   std::array<double, kMaxStack> earlier;  // the stack as it was with `before`
   std::size_t depth = 0;
@@ -128,10 +139,10 @@ double value_of(const Program& program, const LinkQuantities& now, const LinkQua
   return stack[0];
 }
 
-void check_program(const Program& program, const std::string& name) {
+void check_program(const Program& program, const std::string& name, std::size_t variable_count) {
   std::size_t depth = 0;
   for (const Instruction& instruction : program.code) {
-    check_instruction(instruction, name);
+    check_instruction(instruction, name, variable_count);
     const std::size_t taken = operand_count(instruction.operation);
     require(depth >= taken, name + ": every operation", "given its operands");
     depth += 1 - taken;

@@ -17,10 +17,11 @@ struct Program {
   bool empty() const noexcept { return code.empty(); }
 };
 
+/// @param variable_count  how many variables it may ask for
 /// @throws std::invalid_argument beginning with `name`, unless the program is well-formed: known
-/// operations and quantities, finite constants, one value left at the end, at most kMaxStack on the
-/// way, slots below kMaxSlots.
-void check_program(const Program& program, const std::string& name);
+/// operations, quantities and variables, finite constants, one value left at the end, at most
+/// kMaxStack on the way, slots below kMaxSlots.
+void check_program(const Program& program, const std::string& name, std::size_t variable_count = 0);
 
 /// How many values an operation takes from the stack.
 std::size_t operand_count(Operation operation) noexcept;
@@ -32,13 +33,15 @@ double apply(const Instruction& instruction, const double* operands) noexcept;
 
 /// True if the program asks for this quantity.
 bool asks_for(const Program& program, Quantity quantity) noexcept;
+/// True if the program asks for a variable of the network.
+bool asks_for_variable(const Program& program) noexcept;
 /// True when `rising` or `falling` stand in it.
 bool has_edge(const Program& program) noexcept;
 
 /// What a program may ask of a link, by Quantity.
 using LinkQuantities = std::array<double, kQuantityCount>;
 
-/// The value of a program for one link. Precondition: well-formed.
+/// The value of a program for one link. Precondition: well-formed, and asks for no variable.
 /// @param before  the same link a moment earlier, for `rising` and `falling`; may be null
 /// @param edge    what `rising` and `falling` are without it
 double value_of(const Program& program, const LinkQuantities& now,

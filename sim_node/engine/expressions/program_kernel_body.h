@@ -32,6 +32,11 @@ class ProgramLoop {
           value_[depth] = rows.quantity[static_cast<std::size_t>(instruction.quantity)];
           ++depth;
           break;
+        case Operation::kVariable:
+          Batch::fill(own_[depth], program.variable[instruction.slot]);
+          value_[depth] = own_[depth];
+          ++depth;
+          break;
         case Operation::kNegate:
         case Operation::kAbs:
         case Operation::kSqrt:

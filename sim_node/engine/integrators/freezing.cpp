@@ -67,9 +67,10 @@ std::vector<OfMat> measure(const NetworkDescription& network,
   return of_mats;
 }
 
-/// True if a condition of a state machine may come true while nothing moves.
-bool asks_for_age(const StateMachine& state_machine) {
-  return std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
+/// True if a condition of a state machine may come true while its ends do not move.
+bool comes_true_at_rest(const StateMachine& state_machine) {
+  return asks_for_variable(state_machine) ||
+         std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
                      [](const Transition& exit) { return asks_for(exit.when, Quantity::kAge); });
 }
 
@@ -139,7 +140,7 @@ void Freezing::adopt(const NetworkDescription& network,
       std::any_of(state_machines.begin(), state_machines.end(), asks_for_impulse);
   never_rests_.clear();
   for (const StateMachine& state_machine : state_machines) {
-    never_rests_.push_back(any_impulse || asks_for_age(state_machine));
+    never_rests_.push_back(any_impulse || comes_true_at_rest(state_machine));
   }
   wake_all();
 }

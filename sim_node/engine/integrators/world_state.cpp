@@ -55,7 +55,8 @@ const std::vector<StateMachine>& state_machines_of(const Snapshot& snapshot,
     throw std::invalid_argument("the snapshot has other state machines than the network");
   }
   for (std::size_t i = 0; i < saved.size(); ++i) {
-    check_state_machine(saved[i], "state machine " + std::to_string(i) + " of the snapshot");
+    check_state_machine(saved[i], "state machine " + std::to_string(i) + " of the snapshot",
+                        network.variables.size());
   }
   return saved;
 }
@@ -85,7 +86,7 @@ StateTable WorldState::make_table(std::vector<StateMachine> from) const {
   const IntegratorKind integrator = description().integrator;
   const bool whole_steps =
       integrator != IntegratorKind::kCordis && integrator != IntegratorKind::kModal;
-  return StateTable(std::move(from), network->step(), whole_steps);
+  return StateTable(std::move(from), network->step(), whole_steps, description().variables.size());
 }
 
 StepReport WorldState::step() noexcept {
@@ -211,7 +212,8 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   if (index >= table.state_machines().size()) {
     throw std::invalid_argument("state machine " + std::to_string(index) + " does not exist");
   }
-  check_state_machine(state_machine, "state machine " + std::to_string(index));
+  check_state_machine(state_machine, "state machine " + std::to_string(index),
+                      description().variables.size());
   if (state_machine.states.size() != table.state_machines()[index].states.size()) {
     throw std::invalid_argument("a state machine is replaced by one of as many states");
   }

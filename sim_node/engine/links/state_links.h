@@ -61,6 +61,10 @@ class StateLinkArray {
   std::uint32_t state_of(const StateTable& table, std::uint32_t link) const noexcept;
   double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
   double tension(std::uint32_t link) const noexcept { return tension_[link]; }
+  /// Since the state was entered, before a step [s].
+  double age(std::uint32_t link, std::uint64_t step) const noexcept {
+    return (static_cast<double>(step) - entered_[link]) * dt_;
+  }
   StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
   /// True if a change of state has happened in this step, which is not the first.
   bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {

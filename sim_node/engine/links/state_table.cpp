@@ -18,8 +18,8 @@ static_assert(static_cast<int>(RestCode::kKeep) == static_cast<int>(RestRule::kK
               static_cast<int>(RestCode::kHere) == static_cast<int>(RestRule::kHere) &&
               static_cast<int>(RestCode::kExpression) == static_cast<int>(RestRule::kExpression));
 
-ProgramTerm ready(const Program& program) {
-  return {program.code.data(), program.code.size()};
+ProgramTerm ready(const Program& program, const double* variables = nullptr) {
+  return {program.code.data(), program.code.size(), variables};
 }
 
 }  // namespace
@@ -56,6 +56,7 @@ struct StateTable::Content {
   std::vector<std::uint32_t> state_machine_of;  // by state
   std::array<bool, kQuantityCount> needs{};
   std::uint32_t slot_count = 0;
+  std::vector<double> variables;  // of as many as the network has; stays where it is
 
   void build();
   void add_state_machine(const StateMachine& state_machine);
@@ -82,7 +83,7 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
     record_needs(exit.when);
     record_needs(exit.rest_length);
     if (exit.triggered != Quantity::kNone) needs[static_cast<std::size_t>(exit.triggered)] = true;
-    exits_of_state_machine.push_back({ready(exit.when), ready(exit.rest_length),
+    exits_of_state_machine.push_back({ready(exit.when, variables.data()), ready(exit.rest_length),
                                       static_cast<RestCode>(exit.rest), first + exit.target,
                                       exit.triggered});
   }
@@ -129,8 +130,10 @@ void StateTable::Content::record_needs(const Program& program) {
   }
 }
 
-StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps)
+StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps,
+                       std::size_t variable_count)
     : content_(std::make_unique<Content>()) {
+  content_->variables.resize(variable_count, 0.0);
   content_->state_machines = std::move(state_machines);
   content_->dt = dt;
   content_->part_of_work = whole_steps ? 0.0 : 0.5;
@@ -143,6 +146,10 @@ StateTable& StateTable::operator=(StateTable&&) noexcept = default;
 
 const StateTerm* StateTable::terms() const noexcept {
   return content_->terms.data();
+}
+
+std::span<double> StateTable::variables() noexcept {
+  return content_->variables;
 }
 
 std::size_t StateTable::state_count() const noexcept {

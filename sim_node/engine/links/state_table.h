@@ -24,12 +24,16 @@ class StateTable {
   /// Precondition: check_state_machine has passed all of them.
   /// @param whole_steps  the account of the world belongs to the moments x(n), not to the middles
   ///                     between them
-  StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps = false);
+  /// @param variable_count  how many variables of the network conditions may ask for
+  StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps = false,
+             std::size_t variable_count = 0);
   ~StateTable();
   StateTable(StateTable&&) noexcept;
   StateTable& operator=(StateTable&&) noexcept;
 
   const StateTerm* terms() const noexcept;
+  /// The values of the variables that conditions see, one for all links; 0 at first.
+  std::span<double> variables() noexcept;
   std::size_t state_count() const noexcept;  ///< without the padding
   StateIndex padding_state() const noexcept;
   StateIndex first_state(std::uint32_t state_machine) const noexcept;

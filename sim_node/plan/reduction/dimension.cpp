@@ -49,11 +49,12 @@ bool fits_a_line(const scene::Scene& scene) {
   if (!network.state_links.empty()) return false;
   const auto rubs = [](const engine::StateMachine& one) { return one.friction.acts(); };
   if (std::ranges::any_of(network.state_machines, rubs)) return false;
-  for (const scene::Signal& signal : scene.signals.signals()) {
-    const bool is_of_link = signal.quantity >= scene::Quantity::kDistance &&
-                            signal.quantity <= scene::Quantity::kTension;
-    if (is_of_link) return false;
-  }
+  const auto has_sign = [](const engine::Variable& variable) {
+    return variable.quantity >= engine::VariableKind::kDistance &&
+           variable.quantity <= engine::VariableKind::kTension;
+  };
+  if (std::ranges::any_of(scene.signals.signals(), has_sign)) return false;
+  if (std::ranges::any_of(network.variables, has_sign)) return false;
   // Where both ends are at one place there is no direction, and no force, but in 1 dimension.
   const auto begins_apart = [&network](const auto& link) {
     const engine::Mat& a = network.mats[link.mat_a];
@@ -100,13 +101,15 @@ void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene
     port.rest = project(port.rest);
     for (Vec3& direction : port.directions) direction = project(direction);
   }
-  std::vector<scene::Signal> signals = scene.signals.signals();
-  for (scene::Signal& signal : signals) {
-    if (signal.quantity == scene::Quantity::kPosition) {
-      signal.offset -= signal.direction.dot(subspace.origin);  // what never changes
+  const auto project_variable = [&](engine::Variable& variable) {
+    if (variable.quantity == engine::VariableKind::kPosition) {
+      variable.offset -= variable.direction.dot(subspace.origin);  // what never changes
     }
-    signal.direction = project(signal.direction);
-  }
+    variable.direction = project(variable.direction);
+  };
+  std::vector<scene::Signal> signals = scene.signals.signals();
+  std::ranges::for_each(signals, project_variable);
+  std::ranges::for_each(network.variables, project_variable);
   scene.signals = scene::SignalReader(std::move(signals), network);
   scene.subspace = subspace;
 }

@@ -4,14 +4,13 @@
 namespace cordis::plan {
 namespace {
 
-void hold_signal(const scene::Signal& signal, Held& held) {
-  for (const std::uint32_t mat : signal.mats) held.mats[mat] = true;
-  if (scene::is_of_mat(signal.quantity)) held.mats[signal.index] = true;
-  if (scene::is_of_link(signal.quantity) && signal.kind == scene::LinkKind::kLinear) {
-    held.links[signal.index] = true;
+void hold(const engine::Variable& variable, Held& held) {
+  if (is_of_mat(variable.quantity)) held.mats[variable.index] = true;
+  if (is_of_link(variable.quantity) && variable.kind == engine::LinkKind::kLinear) {
+    held.links[variable.index] = true;
   }
-  if (signal.quantity == scene::Quantity::kEnergy ||
-      signal.quantity == scene::Quantity::kElasticEnergy) {
+  if (variable.quantity == engine::VariableKind::kEnergy ||
+      variable.quantity == engine::VariableKind::kElasticEnergy) {
     held.energy = true;
   }
 }
@@ -43,7 +42,11 @@ Held held_in(const scene::Scene& scene) {
   for (std::size_t l = 0; l < network.links.size(); ++l) {
     held.links[l] = handles[network.links[l].mat_a] || handles[network.links[l].mat_b];
   }
-  for (const scene::Signal& signal : scene.signals.signals()) hold_signal(signal, held);
+  for (const scene::Signal& signal : scene.signals.signals()) {
+    for (const std::uint32_t mat : signal.mats) held.mats[mat] = true;
+    hold(signal, held);
+  }
+  for (const engine::Variable& variable : network.variables) hold(variable, held);
   for (std::size_t l = 0; l < network.links.size(); ++l) {
     if (!held.links[l]) continue;
     held.mats[network.links[l].mat_a] = held.mats[network.links[l].mat_b] = true;

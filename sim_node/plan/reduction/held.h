@@ -10,9 +10,9 @@ namespace cordis::plan {
 /// What something in a scene asks for by itself.
 struct Held {
   std::vector<bool> mats;   ///< fixed ones, ports, members of sets, ends of other links than linear
-                            ///< ones, those of signals
-  std::vector<bool> links;  ///< linear ones: of signals, and couplings of ports
-  bool energy = false;      ///< a signal reports the energy in the links
+                            ///< ones, those of signals and conditions
+  std::vector<bool> links;  ///< linear ones: of signals and conditions, and couplings of ports
+  bool energy = false;      ///< a signal or a condition asks for the energy in the links
 };
 
 /// O(MATs + links).

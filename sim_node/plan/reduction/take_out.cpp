@@ -1,6 +1,7 @@
 // sim_node/plan/reduction/take_out.cpp
 #include "sim_node/plan/reduction/take_out.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "sim_node/engine/core/assert.h"
@@ -89,13 +90,17 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
     of_mats.apply(port.mat);
     of_mats.apply(port.tool);
   }
+  const auto renumber = [&](engine::Variable& variable) {
+    if (is_of_mat(variable.quantity)) of_mats.apply(variable.index);
+    if (is_of_link(variable.quantity) && variable.kind == engine::LinkKind::kLinear) {
+      of_links.apply(variable.index);
+    }
+  };
+  std::ranges::for_each(network.variables, renumber);
   std::vector<scene::Signal> signals = scene.signals.signals();
   for (scene::Signal& signal : signals) {
     of_mats.apply(signal.mats);
-    if (scene::is_of_mat(signal.quantity) && signal.mats.empty()) of_mats.apply(signal.index);
-    if (scene::is_of_link(signal.quantity) && signal.kind == scene::LinkKind::kLinear) {
-      of_links.apply(signal.index);
-    }
+    renumber(signal);
   }
   scene.signals = scene::SignalReader(std::move(signals), network);
   number_links(scene);

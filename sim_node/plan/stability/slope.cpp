@@ -327,8 +327,10 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
     largest.bounded = largest.bounded && slope.bounded;
-    // Each of several states holds only where its exits let it: its slope beyond is no uncertainty.
-    const bool may_end = !state_machine.is_stateless() && slope.uncertainty == kPullsWhereEndsMeet;
+    // Each of several states holds only where its exits let it: its slope beyond is no uncertainty. What
+    // another variable decides may hold anywhere.
+    const bool may_end = !state_machine.is_stateless() && !asks_for_variable(state_machine) &&
+                         slope.uncertainty == kPullsWhereEndsMeet;
     if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }
   return largest;

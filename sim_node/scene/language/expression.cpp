@@ -148,14 +148,33 @@ class Parser {
   }
 
   Operand read_comparison() {
+    const std::size_t of_left = words_.size();
     const Operand left = read_sum();
     std::size_t offset = offset_;
     const std::optional<Operation> comparison = take_comparison(offset);
     if (!comparison) return left;
-    const Operand both = join(left, read_sum(), *comparison, Type::kNumber, Type::kTruth, offset);
+    const std::size_t of_right = words_.size();
+    const Operand right = read_sum();
+    const bool is_equality =
+        *comparison == Operation::kEqual || *comparison == Operation::kNotEqual;
+    if (is_equality && words_.size() == of_right + 1 && of_right == of_left + 1)
+      name_state(words_[of_left], words_[of_right]);
+    const Operand both = join(left, right, *comparison, Type::kNumber, Type::kTruth, offset);
     if (take_comparison(offset))
       throw Fault{offset, "compares three things at once", "write a < b and b < c"};
     return both;
+  }
+
+  /// In `bolt.state == broken` the name stands for the number of a state of the bolt.
+  static void name_state(ExpressionWord& one, ExpressionWord& other) {
+    const auto asks_for_state = [](const ExpressionWord& word) {
+      return word.kind == ExpressionWord::Kind::kOfAnother && word.name.ends_with(".state");
+    };
+    ExpressionWord& of_link = asks_for_state(one) ? one : other;
+    ExpressionWord& state = asks_for_state(one) ? other : one;
+    if (!asks_for_state(of_link) || state.kind != ExpressionWord::Kind::kName) return;
+    state.kind = ExpressionWord::Kind::kOfAnother;
+    state.state = std::exchange(state.name, of_link.name);
   }
 
   Operand read_sum() {
@@ -226,6 +245,11 @@ class Parser {
     if (is_connective(word))
       throw Fault{offset, "needs something before '" + std::string(word) + "'", {}};
     offset_ += word.size();
+    if (take_path()) {
+      add({ExpressionWord::Kind::kOfAnother, 0.0,
+           std::string(text_.substr(offset, offset_ - offset)), Operation::kAdd, offset});
+      return {Type::kNumber, offset};
+    }
     skip_blanks();
     if (offset_ < text_.size() && text_[offset_] == '(') return read_call(word, offset);
     if (find_function(word) != nullptr)
@@ -233,6 +257,23 @@ class Parser {
                   "write " + std::string(word) + "(...)"};
     add({ExpressionWord::Kind::kName, 0.0, std::string(word), Operation::kAdd, offset});
     return {Type::kNumber, offset};
+  }
+
+  /// Goes on behind a name: [3], .name, and so on. @return whether there was a dot
+  bool take_path() {
+    bool has_dot = false;
+    while (offset_ + 1 < text_.size()) {
+      if (text_[offset_] == '.' && is_letter(text_[offset_ + 1])) {
+        has_dot = true;
+        offset_ += 1 + peek_word(offset_ + 1).size();
+        continue;
+      }
+      std::size_t end = offset_ + 1;
+      while (end < text_.size() && is_digit(text_[end])) ++end;
+      if (text_[offset_] != '[' || end >= text_.size() || text_[end] != ']') return has_dot;
+      offset_ = end + 1;
+    }
+    return has_dot;
   }
 
   Operand read_number() {

@@ -11,14 +11,15 @@
 
 namespace cordis::scene {
 
-/// A number, a name, or an operation on the words before it.
+/// A number, a name, a quantity of something else, or an operation on the words before it.
 struct ExpressionWord {
-  enum class Kind { kNumber, kName, kOperation };
+  enum class Kind { kNumber, kName, kOfAnother, kOperation };
   Kind kind = Kind::kNumber;
   double number = 0.0;
-  std::string name;
+  std::string name;  ///< of kOfAnother: bolt.force_n, string[3].position_y_m
   engine::Operation operation = engine::Operation::kAdd;
   std::size_t offset = 0;  ///< byte in the text
+  std::string state{};     ///< of kOfAnother: the state whose number it is, instead of the quantity
 };
 
 /// An expression in postfix order. What its names stand for is not known here.
@@ -39,6 +40,7 @@ struct Expression {
 ///     min(a, b, ...)  max(a, b, ...)  if(truth, a, b)
 ///     a < b  a <= b  a > b  a >= b  a == b  a != b  rising(a)  falling(a)     numbers to a truth
 ///     a and b  a or b  not a     of truths
+///     bolt.force_n  string[3].position_y_m  bolt.state == broken     of something else
 ///
 /// with numbers, names and parentheses; the precedence is that of Python, with ^ for its **. A fault
 /// is a problem of its place within the text.

@@ -68,11 +68,29 @@ void add_operation(std::vector<Instruction>& code, Operation operation, std::uin
   code.back().constant = engine::apply(added, values.data());
 }
 
+/// The reference of a word that names something outside the link; nothing when it names none.
+std::optional<VariableReference> reference_of(const Expression& expression,
+                                              const ExpressionWord& word,
+                                              const ParameterValues& parameters,
+                                              const AskedOutside& outside) {
+  const config::Place place = expression.place_of(word);
+  if (word.kind == ExpressionWord::Kind::kOfAnother) {
+    const std::size_t dot = word.name.rfind('.');
+    return VariableReference{word.name.substr(0, dot), word.name.substr(dot + 1), word.state,
+                             place};
+  }
+  const bool is_known = word.name == kTimeWord || outside.signals.contains(word.name);
+  if (word.kind != ExpressionWord::Kind::kName || !is_known) return {};
+  if (find_quantity(word.name) != nullptr || parameters.find(word.name)) return {};
+  return VariableReference{{}, word.name, {}, place};
+}
+
 }  // namespace
 
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
-                                          std::uint32_t& next_slot, Problems& problems) {
+                                          std::uint32_t& next_slot, Problems& problems,
+                                          AskedOutside* outside) {
   CompiledExpression compiled;
   std::vector<Instruction>& code = compiled.program.code;
   const std::size_t errors_before = problems.error_count();
@@ -85,8 +103,19 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       }
       continue;
     }
+    std::optional<VariableReference> reference;
+    if (outside != nullptr) reference = reference_of(expression, word, parameters, *outside);
+    if (reference) {
+      const auto slot = static_cast<std::uint32_t>(outside->references.size());
+      code.push_back({Operation::kVariable, engine::Quantity::kDistance, 0.0, slot});
+      outside->references.push_back(std::move(*reference));
+      continue;
+    }
     double number = word.number;
-    if (word.kind == ExpressionWord::Kind::kName) {
+    if (word.kind == ExpressionWord::Kind::kOfAnother) {
+      problems.error(expression.place_of(word), what + " cannot ask for '" + word.name + "'",
+                     "only a condition, 'when', asks for what is outside its link");
+    } else if (word.kind == ExpressionWord::Kind::kName) {
       if (const QuantityName* const known = find_quantity(word.name)) {
         code.push_back({Operation::kQuantity, known->quantity, 0.0, 0});
         if (compiled.first == engine::Quantity::kNone) compiled.first = known->quantity;
@@ -96,6 +125,10 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       if (!value) {
         std::vector<std::string> words = parameters.names();
         for (const QuantityName& known : kQuantityNames) words.emplace_back(known.word);
+        if (outside != nullptr) {
+          words.insert(words.end(), outside->signals.begin(), outside->signals.end());
+          words.emplace_back(kTimeWord);
+        }
         problems.error(expression.place_of(word),
                        what + " names '" + word.name + "', which is no quantity and no parameter",
                        config::did_you_mean(word.name, words));

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,21 @@ double optional_formula(config::MappingReader& reader, const std::string& key, d
 double required_formula(config::MappingReader& reader, const std::string& key, config::Range range,
                         const ParameterValues& parameters, config::Problems& problems);
 
+/// What a condition asks for outside its link, by name: whose it is shows where the link stands.
+struct VariableReference {
+  std::string owner;  ///< selection of one MAT, port or link; empty: of the scene
+  std::string word;   ///< quantity with its axis and unit, time_s, or the name of a signal
+  std::string state;  ///< not empty: the number of this state of the link is meant
+  config::Place place;
+};
+
+/// What a condition may ask for outside its link.
+struct AskedOutside {
+  const std::set<std::string>& signals;  ///< names of those of the scene
+  std::vector<VariableReference>&
+      references;  ///< of the liaison; Instruction::slot is a place here
+};
+
 /// A condition or a formula over the quantities of a link, for the engine.
 struct CompiledExpression {
   engine::Program program;
@@ -66,9 +82,11 @@ struct CompiledExpression {
 /// Puts the names of an expression to quantities and values, and folds what is constant. Whatever
 /// is wrong is a problem of its place.
 /// @param next_slot  of the next `rising` or `falling`; moved on
+/// @param outside    of a condition; nullptr where nothing outside the link may be asked for
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
-                                          std::uint32_t& next_slot, config::Problems& problems);
+                                          std::uint32_t& next_slot, config::Problems& problems,
+                                          AskedOutside* outside = nullptr);
 
 /// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg and the
 /// parameters. Whatever is wrong is a problem of its place.

@@ -24,6 +24,9 @@ inline constexpr QuantityName kQuantityNames[] = {
     {"mass_b_kg", engine::Quantity::kMassB},
 };
 
+/// The time since the start, in conditions and in functions of time [s].
+inline constexpr const char* kTimeWord = "time_s";
+
 /// nullptr when there is none of that name.
 constexpr const QuantityName* find_quantity(std::string_view word) noexcept {
   for (const QuantityName& known : kQuantityNames) {

@@ -200,22 +200,26 @@ void diagnose(const StateMachine& state_machine, const StateMachinePlaces& place
               const std::string& what, config::Problems& problems) {
   check_states(state_machine, places, what, problems);
   std::vector<bool> open(state_machine.exits.size());
-  for (std::size_t e = 0; e < state_machine.exits.size(); ++e)
-    open[e] = check_condition(state_machine.exits[e].when, places.exits[e], what, problems);
+  for (std::size_t e = 0; e < state_machine.exits.size(); ++e) {
+    open[e] = check_condition(state_machine.exits[e].when, places.exits[e], what, problems) &&
+              !asks_for_variable(state_machine.exits[e].when);  // whose value is not known here
+  }
 
   Entries entries(state_machine);
   for (const LinkState& from : state_machine.states) {
     for (std::uint32_t e = from.first_exit; e < from.last_exit; ++e) {
       const Transition& entry = state_machine.exits[e];
+      if (asks_for_variable(entry.when)) continue;
       const std::vector<Quantities> links = entries.through(from, entry);
       const LinkState& next_state = state_machine.states[entry.target];
       for (std::uint32_t next = next_state.first_exit;
            next < next_state.last_exit && !links.empty(); ++next) {
         const Transition& exit = state_machine.exits[next];
+        if (!open[next]) continue;
         const bool holds = std::all_of(links.begin(), links.end(), [&](const Quantities& link) {
           return value_of(exit.when, link) != 0.0;
         });
-        if (!holds || !open[next]) continue;
+        if (!holds) continue;
         problems.warning(
             places.exits[next],
             "this exit of state '" + next_state.name + "' of " + what +

@@ -2,6 +2,7 @@
 #include "sim_node/scene/liaisons/liaison.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "node/config/key_log.h"
 #include "node/config/nearest_word.h"
@@ -125,7 +126,8 @@ class Liaisons::Reader {
 };
 
 void Liaisons::read(const std::vector<LiaisonSection>& sections, int space,
-                    config::Problems& problems) {
+                    std::set<std::string> signals, config::Problems& problems) {
+  signals_ = std::move(signals);
   Reader reader(*this, problems);
   for (const LiaisonSection& section : sections) reader.read_section(section.section, section.file);
   reader.complete_all();

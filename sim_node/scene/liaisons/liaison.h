@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,10 @@ struct LiaisonSection {
 class Liaisons {
  public:
   /// Reads all sections of a scene and what they include; to be called once.
-  /// @param space  of the scene: a rest length may be negative in 1-D alone
-  void read(const std::vector<LiaisonSection>& sections, int space, config::Problems& problems);
+  /// @param space    of the scene: a rest length may be negative in 1-D alone
+  /// @param signals  names of those of the scene, which conditions may ask for
+  void read(const std::vector<LiaisonSection>& sections, int space, std::set<std::string> signals,
+            config::Problems& problems);
 
   /// The liaison that the value names. Nothing when there is none of that name, which is a problem,
   /// or when the liaison itself has one.
@@ -42,6 +45,7 @@ class Liaisons {
                       bool with_hint = true) const;
   /// nullptr when there is none.
   const Liaison* find(const std::string& name) const noexcept;
+  const std::set<std::string>& signals() const noexcept { return signals_; }
   /// In the order of the files.
   const std::vector<std::string>& names() const noexcept { return names_; }
 
@@ -58,6 +62,7 @@ class Liaisons {
   mutable StateMachinePool pool_;
   std::map<std::string, Liaison> liaisons_;
   std::vector<std::string> names_;
+  std::set<std::string> signals_;
 };
 
 }  // namespace cordis::scene

@@ -152,13 +152,15 @@ class LiaisonReader {
     law.kind = LinkKind::kState;
     const std::size_t errors_before = problems_.error_count();
     StateMachinePlaces places;
-    engine::StateMachine state_machine = read_state_machine(reader, parameters, places, problems_);
+    AskedOutside outside{liaisons_.signals(), law.references};
+    engine::StateMachine state_machine =
+        read_state_machine(reader, parameters, outside, places, problems_);
     read_rest(reader, law, parameters);
     law.reach = read_reach(reader, parameters);
     if (problems_.error_count() != errors_before) return law;
     state_machine.name = open_.back();
     try {
-      engine::check_state_machine(state_machine, reader.what());
+      engine::check_state_machine(state_machine, reader.what(), law.references.size());
     } catch (const std::invalid_argument& refusal) {
       problems_.error(reader.place(), refusal.what());
       return law;

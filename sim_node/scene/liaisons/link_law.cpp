@@ -117,7 +117,7 @@ void place_state_machines(const Use& use, const std::string& liaison,
     part.overrides = overrides;
     if (part.kind != LinkKind::kState) return;
     part.state_machine_index = use.liaisons.pool().index_of(
-        {liaison, overrides, part.part, use.owner}, *part.state_machine);
+        {liaison, overrides, part.part, use.owner}, *part.state_machine, part.references);
   };
   put(law);
   for (LinkLaw& part : law.beside) put(part);
@@ -165,16 +165,37 @@ std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law)
 }
 
 bool StateMachinePool::Origin::operator<(const Origin& other) const {
-  return std::tie(liaison, overrides, part, owner) <
-         std::tie(other.liaison, other.overrides, other.part, other.owner);
+  return std::tie(liaison, overrides, part, owner, scope) <
+         std::tie(other.liaison, other.overrides, other.part, other.owner, other.scope);
 }
 
-std::uint32_t StateMachinePool::index_of(const Origin& origin,
-                                         const engine::StateMachine& state_machine) {
+std::uint32_t StateMachinePool::index_of(Origin origin, const engine::StateMachine& state_machine,
+                                         const std::vector<VariableReference>& references) {
+  if (!references.empty()) origin.scope = scope_;
   const auto next = static_cast<std::uint32_t>(state_machines_.size());
-  const auto [known, is_new] = indices_.emplace(origin, next);
-  if (is_new) state_machines_.push_back(state_machine);
+  const auto [known, is_new] = indices_.emplace(std::move(origin), next);
+  if (is_new) {
+    state_machines_.push_back(state_machine);
+    references_.push_back(references);
+    bindings_.emplace_back();
+  }
   return known->second;
+}
+
+void StateMachinePool::bind(std::uint32_t index, Bindings bindings) {
+  bindings_[index] = std::move(bindings);
+  bind_as(index, state_machines_[index]);
+}
+
+void StateMachinePool::bind_as(std::uint32_t index, engine::StateMachine& state_machine) const {
+  const Bindings& bindings = bindings_[index];
+  for (engine::Transition& exit : state_machine.exits) {
+    for (engine::Instruction& instruction : exit.when.code) {
+      if (instruction.operation != engine::Operation::kVariable) continue;
+      CORDIS_ASSERT(instruction.slot < bindings.size());
+      instruction = bindings[instruction.slot];
+    }
+  }
 }
 
 std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Liaisons& liaisons,

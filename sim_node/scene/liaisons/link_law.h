@@ -9,14 +9,14 @@
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/scene/language/formula.h"
 
 namespace cordis::scene {
 
 class Liaisons;
-class ParameterValues;
 
-/// The kinds of links in the order of their numbers in a scene: first all linear ones, and so on.
-enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell };
+/// In the order of their numbers in a scene: first all linear ones, and so on.
+using engine::LinkKind;
 inline constexpr std::size_t kLinkKindCount = 3;
 
 /// How far from each other two MATs of sets may be.
@@ -43,12 +43,13 @@ struct LinkLaw {
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
   std::shared_ptr<const engine::StateMachine> state_machine;  ///< of kState
-  std::uint32_t state_machine_index = 0;  ///< of kState, in the network, once a link uses it
-  Reach reach;                            ///< of kState
-  std::string part;                       ///< its name in a parallel liaison, else empty
-  std::string liaison;                    ///< the name of that it was made from, or empty
-  ParameterOverrides overrides;           ///< what the link gave to it
-  std::vector<LinkLaw> beside;            ///< the others of a parallel liaison
+  std::vector<VariableReference> references;  ///< of its conditions, until the scene is whole
+  std::uint32_t state_machine_index = 0;      ///< of kState, in the network, once a link uses it
+  Reach reach;                                ///< of kState
+  std::string part;                           ///< its name in a parallel liaison, else empty
+  std::string liaison;                        ///< the name of that it was made from, or empty
+  ParameterOverrides overrides;               ///< what the link gave to it
+  std::vector<LinkLaw> beside;                ///< the others of a parallel liaison
 };
 
 inline constexpr const char* kStiffness = "stiffness_n_per_m";
@@ -68,21 +69,37 @@ class StateMachinePool {
   struct Origin {
     std::string liaison;
     ParameterOverrides overrides;
-    std::string part;   ///< of a parallel liaison
-    std::string owner;  ///< the named links it belongs to alone, or empty
+    std::string part;     ///< of a parallel liaison
+    std::string owner;    ///< the named links it belongs to alone, or empty
+    std::string scope{};  ///< w.rim. of the part whose names its conditions ask for, or empty
     bool operator<(const Origin& other) const;
   };
+  /// What is put in the place of the references of a state machine, one instruction for each.
+  using Bindings = std::vector<engine::Instruction>;
 
+  /// Links that are read belong to the part of this scope, until the next call.
+  void enter(std::string scope) { scope_ = std::move(scope); }
   /// Index of the state machine of this origin, which is added when it is new.
-  std::uint32_t index_of(const Origin& origin, const engine::StateMachine& state_machine);
+  std::uint32_t index_of(Origin origin, const engine::StateMachine& state_machine,
+                         const std::vector<VariableReference>& references);
   const std::map<Origin, std::uint32_t>& origins() const noexcept { return indices_; }
   const std::vector<engine::StateMachine>& state_machines() const noexcept {
     return state_machines_;
   }
+  const std::vector<VariableReference>& references(std::uint32_t index) const {
+    return references_[index];
+  }
+  /// Puts the references of a state machine to variables, once.
+  void bind(std::uint32_t index, Bindings bindings);
+  /// Binds a state machine of the same liaison with other numbers, which takes the place of this one.
+  void bind_as(std::uint32_t index, engine::StateMachine& state_machine) const;
 
  private:
   std::vector<engine::StateMachine> state_machines_;
+  std::vector<std::vector<VariableReference>> references_;  // by state machine
+  std::vector<Bindings> bindings_;                          // by state machine
   std::map<Origin, std::uint32_t> indices_;
+  std::string scope_;
 };
 
 /// Where a law is read: links need a liaison; matter may write its stiffness itself, and may have a

@@ -24,6 +24,7 @@ constexpr double kMaxViscosity = 1e300;   // a number also over the shortest ste
 struct ExitSource {
   const ParameterValues& parameters;
   const std::vector<std::string>& states;  // their names
+  AskedOutside& outside;
   Problems& problems;
 };
 
@@ -78,7 +79,8 @@ Transition read_exit(config::MappingReader& reader, const ExitSource& source,
     const std::optional<Expression> condition = parse_expression(when, what, source.problems);
     std::optional<CompiledExpression> compiled;
     if (condition)
-      compiled = compile(*condition, what, source.parameters, next_slot, source.problems);
+      compiled =
+          compile(*condition, what, source.parameters, next_slot, source.problems, &source.outside);
     if (compiled && !condition->is_truth) {
       source.problems.error(when.place(), what + " must be a condition, got a number",
                             "compare it: " + when.text() + " > 0");
@@ -153,7 +155,7 @@ bool looks_like_state_machine(const Value& liaison) {
 }
 
 engine::StateMachine read_state_machine(config::MappingReader& reader,
-                                        const ParameterValues& parameters,
+                                        const ParameterValues& parameters, AskedOutside& outside,
                                         StateMachinePlaces& places, Problems& problems) {
   engine::StateMachine state_machine;
   state_machine.friction = read_friction(reader, parameters, problems);
@@ -179,7 +181,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
   const std::string start = reader.optional_choice("start", names.front(), names);
   state_machine.start =
       static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
-  const ExitSource source{parameters, names, problems};
+  const ExitSource source{parameters, names, outside, problems};
   for (const Value::Entry& entry : states.entries())
     read_state(entry, reader.what(), source, state_machine, places);
   return state_machine;

@@ -20,10 +20,11 @@ struct StateMachinePlaces {
 };
 
 /// Reads the keys `friction`, `states` and `start`, or those of a single state, which then stand in the liaison
-/// itself. Whatever is wrong is a problem; then the state machine is not to be used.
+/// itself. Whatever is wrong is a problem; then the state machine is not to be used. What its conditions ask for
+/// outside their link are references, until bind() puts variables in their place.
 /// The language is described in docs/language.md. [Luc90 III.2.3 b formalism to modify the liaison]
 engine::StateMachine read_state_machine(config::MappingReader& reader,
-                                        const ParameterValues& parameters,
+                                        const ParameterValues& parameters, AskedOutside& outside,
                                         StateMachinePlaces& places, config::Problems& problems);
 
 /// True if the keys of a liaison without `kind` can only be those of a state machine.

@@ -23,7 +23,7 @@ using engine::TimeFunction;
 using engine::Vec3;
 
 constexpr double kSamePlace = 1e-9;  // [m]
-constexpr std::array<FormulaName, 1> kNamesOfTime{{{"time_s", engine::Quantity::kAge}}};
+constexpr std::array<FormulaName, 1> kNamesOfTime{{{kTimeWord, engine::Quantity::kAge}}};
 
 struct DriveKey {
   const char* key;

@@ -15,10 +15,12 @@ void set_turn(const Eigen::Matrix3d& turn, engine::Drive& drive) {
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(drive.turn.data()) = turn;
 }
 
-void Assembly::read_liaisons(const Value& section) {
+void Assembly::read_liaisons(const Value& section, const Value& signals) {
+  std::set<std::string> names_of_signals;
+  for (const Value::Entry& entry : signals.entries()) names_of_signals.insert(entry.key);
   std::vector<LiaisonSection> sections{{section, scene.file}};
   sections.insert(sections.end(), parts.liaisons().begin(), parts.liaisons().end());
-  liaisons->read(sections, scene.space(), problems);
+  liaisons->read(sections, scene.space(), std::move(names_of_signals), problems);
 }
 
 bool Assembly::put(GeneratedMatter& matter) const {

@@ -53,7 +53,8 @@ struct Assembly {
         parts(all_problems) {}
 
   /// Reads the liaisons of the scene and of files of parts.
-  void read_liaisons(const config::Value& section);
+  /// @param signals  the section of that name: conditions may ask for them
+  void read_liaisons(const config::Value& section, const config::Value& signals);
   /// Numbers the links of all kinds in one row; the last call.
   void finish();
 

@@ -112,11 +112,14 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
   const Placement outer = assembly.placement;
   assembly.placement = outer * placement;
   assembly.open_parts.push_back(use.part);
+  const std::string outer_scope = assembly.names.full("");
   {
     const Names::Scope scope(assembly.names, name);
+    assembly.liaisons->pool().enter(assembly.names.full(""));
     sound = read_matter(assembly, use.body.matter);
     read_links(assembly, use.body.links);
   }
+  assembly.liaisons->pool().enter(outer_scope);
   assembly.open_parts.pop_back();
   assembly.placement = outer;
   sound = sound && start_copy(assembly, use, first);

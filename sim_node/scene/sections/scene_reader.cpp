@@ -8,6 +8,7 @@
 #include "node/config/file_kind.h"
 #include "node/config/yaml_reader.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/conditions.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
 #include "sim_node/scene/sections/ports.h"
@@ -117,11 +118,13 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   Assembly assembly(scene, problems);
   read_world(world, scene, problems);
   assembly.parts.read_section(parts, scene.file);
-  assembly.read_liaisons(liaisons);
+  assembly.read_liaisons(liaisons, signals);
   read_matter(assembly, matter);
   read_ports(assembly, ports);
   read_links(assembly, links);
-  read_signals(assembly, signals);
+  std::vector<Signal> read = read_signals(assembly, signals);
+  read_conditions(assembly, read);
+  if (!problems.has_errors()) scene.signals = SignalReader(std::move(read), scene.network);
   assembly.finish();
   const auto is_ball = [](double radius) { return radius > 0.0; };
   std::vector<double>& radius = scene.network.radius;

@@ -200,10 +200,11 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
     }
     const std::string owner = entry.has_name ? assembly.names.full(entry.name) : "";
     if (!count_set(assembly, entry, set)) return;
-    set.state_machine = part.kind == LinkKind::kState
-                            ? part.state_machine_index
-                            : assembly.liaisons->pool().index_of(
-                                  {part.liaison, part.overrides, part.part, owner}, *state_machine);
+    set.state_machine =
+        part.kind == LinkKind::kState
+            ? part.state_machine_index
+            : assembly.liaisons->pool().index_of({part.liaison, part.overrides, part.part, owner},
+                                                 *state_machine, {});
     const std::string name =
         assembly.names.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
     if (entry.has_name) {

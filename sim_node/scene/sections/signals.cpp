@@ -2,12 +2,12 @@
 #include "sim_node/scene/sections/signals.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
 #include "sim_node/scene/language/name.h"
 #include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/quantity_words.h"
 
 namespace cordis::scene {
 
@@ -15,89 +15,6 @@ namespace {
 
 using config::Value;
 using engine::Vec3;
-
-enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kSet, kScene };
-
-/// What a scene can ask for, of whom.
-struct QuantityWord {
-  const char* word;
-  Owner owner;
-  Quantity quantity;
-  const char* unit;
-  bool has_direction;
-};
-constexpr std::array<QuantityWord, 30> kWords{{
-    {"position", Owner::kMat, Quantity::kPosition, "m", true},
-    {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
-    {"force", Owner::kMat, Quantity::kForce, "N", true},
-    {"speed", Owner::kMat, Quantity::kSpeed, "m/s", false},
-    {"distance", Owner::kLink, Quantity::kDistance, "m", false},
-    {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kLink, Quantity::kTension, "N", false},
-    {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
-    {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kStateLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kStateLink, Quantity::kTension, "N", false},
-    {"state", Owner::kStateLink, Quantity::kState, "", false},
-    {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
-    {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
-    {"bonds", Owner::kStateLink, Quantity::kBonds, "", false},
-    {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
-    {"speed", Owner::kMaxwellLink, Quantity::kElongationRate, "m/s", false},
-    {"pieces", Owner::kMat, Quantity::kPieces, "", false},
-    {"pieces", Owner::kSet, Quantity::kPieces, "", false},
-    {"bonds", Owner::kSet, Quantity::kBonds, "", false},
-    {"changes", Owner::kScene, Quantity::kChanges, "", false},
-    {"awake", Owner::kScene, Quantity::kAwake, "", false},
-    {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
-    {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
-    {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
-    {"gravity_energy", Owner::kScene, Quantity::kGravityEnergy, "J", false},
-    {"dissipated_energy", Owner::kScene, Quantity::kDissipatedEnergy, "J", false},
-    {"port_work", Owner::kScene, Quantity::kPortWork, "J", false},
-    {"switching_energy", Owner::kScene, Quantity::kSwitchingEnergy, "J", false},
-}};
-
-const char* name_of(Owner owner) {
-  switch (owner) {
-    case Owner::kScene:
-      return "the scene";
-    case Owner::kLink:
-      return "a link";
-    case Owner::kStateLink:
-      return "a link with states";
-    case Owner::kMaxwellLink:
-      return "a Maxwell element";
-    case Owner::kSet:
-      return "a liaison of sets";
-    case Owner::kMat:
-      break;
-  }
-  return "a MAT";
-}
-
-/// nullptr when the owner has no such quantity.
-const QuantityWord* find_quantity(Owner owner, const std::string& word) {
-  for (const QuantityWord& known : kWords) {
-    if (known.owner == owner && word == known.word) return &known;
-  }
-  return nullptr;
-}
-
-std::string list_of_quantities(Owner owner) {
-  std::string list;
-  for (const QuantityWord& known : kWords) {
-    if (known.owner == owner) list.append(list.empty() ? "" : ", ").append(known.word);
-  }
-  return list;
-}
-
-/// The owner of links of a kind.
-Owner owner_of(LinkKind kind) {
-  if (kind == LinkKind::kLinear) return Owner::kLink;
-  return kind == LinkKind::kState ? Owner::kStateLink : Owner::kMaxwellLink;
-}
 
 /// What `quantity` asks the owner for; nullptr after a problem.
 const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
@@ -114,22 +31,13 @@ const QuantityWord* read_quantity(config::MappingReader& reader, Owner owner) {
 }
 
 /// The direction of a position, velocity or force; a port of one axis needs no `axis`.
-void read_direction_of_signal(Assembly& assembly, config::MappingReader& reader,
-                              const Selection& selection, Signal& signal) {
+void read_direction_of_signal(Assembly& assembly, config::MappingReader& reader, Signal& signal) {
   const std::vector<std::string> words = axis_words(assembly.scene.space());
   if (reader.has("axis")) {
     signal.direction = Vec3::Unit(reader.required_choice("axis", words).front() - 'x');
     return;
   }
-  for (const Port& port : assembly.scene.ports) {
-    const bool is_here = port.mat == selection.indices[0] || port.tool == selection.indices[0];
-    if (!is_here || port.directions.size() != 1) continue;
-    signal.direction = port.directions.front();
-    if (signal.quantity == Quantity::kPosition) signal.offset = signal.direction.dot(port.rest);
-    return;
-  }
-  signal.direction = Vec3::UnitX();
-  if (assembly.scene.space() > 1) reader.required_choice("axis", words);
+  if (!take_own_direction(assembly.scene, signal)) reader.required_choice("axis", words);
 }
 
 /// Reads how often a signal is taken, and whether it is a sound.
@@ -235,7 +143,7 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
     signal.quantity = quantity->quantity;
     signal.unit = quantity->unit;
     if (quantity->has_direction) {
-      read_direction_of_signal(assembly, reader, *picked, signal);
+      read_direction_of_signal(assembly, reader, signal);
     } else if (reader.has("axis")) {
       reader.error_at("axis", std::string("the quantity '") + quantity->word + "' has no axis");
     }
@@ -247,7 +155,7 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
 
 }  // namespace
 
-void read_signals(Assembly& assembly, const Value& section) {
+std::vector<Signal> read_signals(Assembly& assembly, const Value& section) {
   std::vector<Signal> signals;
   for (const Value::Entry& entry : section.entries()) read_signal(assembly, entry, signals);
   for (const Signal& signal : signals) {
@@ -259,8 +167,7 @@ void read_signals(Assembly& assembly, const Value& section) {
     assembly.problems.error(section.place(), "a scene has at most " + std::to_string(kMaxSounds) +
                                                  " signals with 'sound: true'");
   }
-  if (assembly.problems.has_errors()) return;  // and the network is not whole
-  assembly.scene.signals = SignalReader(std::move(signals), assembly.scene.network);
+  return signals;
 }
 
 }  // namespace cordis::scene

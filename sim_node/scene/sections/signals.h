@@ -7,6 +7,6 @@
 namespace cordis::scene {
 
 /// Compiles the signals of a section; the last of the sections.
-void read_signals(Assembly& assembly, const config::Value& section);
+std::vector<Signal> read_signals(Assembly& assembly, const config::Value& section);
 
 }  // namespace cordis::scene

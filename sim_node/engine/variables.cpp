@@ -1,0 +1,146 @@
+// sim_node/engine/variables.cpp
+#include "sim_node/engine/variables.h"
+
+#include <algorithm>
+
+#include "sim_node/engine/core/assert.h"
+
+namespace cordis::engine {
+
+namespace {
+
+/// Distance of the ends of a link and its elongation rate, by the law of Link.
+struct Stretch {
+  double distance = 0.0;
+  double elongation_rate = 0.0;
+};
+
+Stretch stretch_of(std::uint32_t a, std::uint32_t b, const World& world) noexcept {
+  const Vec3 along = world.position(b) - world.position(a);
+  const Vec3 moved = world.velocity(b) - world.velocity(a);
+  if (world.network().dimension() == 1) return {along.x(), moved.x()};
+  const double distance = along.norm();
+  return {distance, distance > 0.0 ? along.dot(moved) / distance : 0.0};
+}
+
+double value_of_state_link(const Variable& variable, const World& world) noexcept {
+  const StateLink& link = world.network().description().state_links[variable.index];
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
+  switch (variable.quantity) {
+    case VariableKind::kDistance:
+      return stretch.distance;
+    case VariableKind::kElongation:
+      return stretch.distance - world.rest_length_of(variable.index);
+    case VariableKind::kElongationRate:
+      return stretch.elongation_rate;
+    case VariableKind::kState:
+      return world.state_of(variable.index);
+    case VariableKind::kRestLength:
+      return world.rest_length_of(variable.index);
+    case VariableKind::kAge:
+      return world.age_of(variable.index);
+    default:
+      return world.tension_of(variable.index);
+  }
+}
+
+double value_of_maxwell_link(const Variable& variable, const World& world) noexcept {
+  const MaxwellLink& link = world.network().description().maxwell_links[variable.index];
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
+  return variable.quantity == VariableKind::kDistance ? stretch.distance : stretch.elongation_rate;
+}
+
+double value_of_link(const Variable& variable, const World& world) noexcept {
+  if (variable.kind == LinkKind::kState) return value_of_state_link(variable, world);
+  if (variable.kind == LinkKind::kMaxwell) return value_of_maxwell_link(variable, world);
+  const Link& link = world.network().description().links[variable.index];
+  const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
+  const double elongation = stretch.distance - link.rest_length;
+  switch (variable.quantity) {
+    case VariableKind::kDistance:
+      return stretch.distance;
+    case VariableKind::kElongation:
+      return elongation;
+    case VariableKind::kElongationRate:
+      return stretch.elongation_rate;
+    default:
+      break;
+  }
+  const bool without_direction = world.network().dimension() > 1 && stretch.distance == 0.0;
+  return without_direction ? 0.0
+                           : link.stiffness * elongation + link.viscosity * stretch.elongation_rate;
+}
+
+double changes_in(const World& world) noexcept {
+  std::uint64_t changes = 0;
+  const std::vector<StateMachine>& state_machines = world.network().description().state_machines;
+  for (std::uint32_t b = 0; b < state_machines.size(); ++b) {
+    const auto states = static_cast<std::uint32_t>(state_machines[b].states.size());
+    for (std::uint32_t source = 0; source < states; ++source) {
+      for (std::uint32_t target = 0; target < states; ++target)
+        changes += world.change_count(b, source, target);
+    }
+  }
+  return static_cast<double>(changes);
+}
+
+double awake_in(const World& world) noexcept {
+  return 1.0 - world.asleep_count() / static_cast<double>(world.network().mass_count());
+}
+
+double energy_of(VariableKind kind, const Energy& energy) noexcept {
+  switch (kind) {
+    case VariableKind::kKineticEnergy:
+      return energy.kinetic;
+    case VariableKind::kElasticEnergy:
+      return energy.elastic;
+    case VariableKind::kGravityEnergy:
+      return energy.gravity;
+    case VariableKind::kDissipatedEnergy:
+      return energy.dissipated;
+    case VariableKind::kPortWork:
+      return energy.port_work;
+    case VariableKind::kSwitchingEnergy:
+      return energy.switching;
+    default:
+      return energy.total();
+  }
+}
+
+}  // namespace
+
+double value_of(const Variable& variable, const World& world, const Energy& energy) noexcept {
+  CORDIS_ASSERT(!is_count(variable.quantity));
+  if (is_of_link(variable.quantity)) return value_of_link(variable, world);
+  switch (variable.quantity) {
+    case VariableKind::kPosition:
+      return variable.direction.dot(world.position(variable.index)) - variable.offset;
+    case VariableKind::kVelocity:
+      return variable.direction.dot(world.velocity(variable.index));
+    case VariableKind::kForce:
+      return variable.direction.dot(world.link_force(variable.index));
+    case VariableKind::kSpeed:
+      return world.velocity(variable.index).norm();
+    case VariableKind::kTime:
+      return static_cast<double>(world.step_count()) * world.network().step();
+    case VariableKind::kChanges:
+      return changes_in(world);
+    case VariableKind::kAwake:
+      return awake_in(world);
+    default:
+      return energy_of(variable.quantity, energy);
+  }
+}
+
+void read_variables(std::span<const Variable> variables, const World& world,
+                    std::span<double> values) noexcept {
+  CORDIS_ASSERT(values.size() == variables.size());
+  const bool wants_energy = std::ranges::any_of(
+      variables, [](const Variable& variable) { return is_energy(variable.quantity); });
+  const Energy energy = wants_energy ? world.energy() : Energy{};
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    values[i] = value_of(variables[i], world, energy);
+  }
+}
+
+}  // namespace cordis::engine

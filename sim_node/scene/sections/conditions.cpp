@@ -1,0 +1,255 @@
+// sim_node/scene/sections/conditions.cpp
+#include "sim_node/scene/sections/conditions.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "node/config/nearest_word.h"
+#include "sim_node/scene/language/quantity.h"
+#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/sections/quantity_words.h"
+
+namespace cordis::scene {
+
+namespace {
+
+using config::Problems;
+using engine::Instruction;
+using engine::Operation;
+using engine::Variable;
+
+/// A quantity as a condition asks for it: that of a signal with its axis and unit.
+struct ConditionWord {
+  std::string text;
+  const QuantityWord* quantity;
+  int axis;  // -1: none, or the MAT's own
+};
+
+std::string unit_ending(const std::string& unit) {
+  if (unit == "m") return "_m";
+  if (unit == "m/s") return "_m_per_s";
+  if (unit == "N") return "_n";
+  return unit == "s" ? "_s" : "";
+}
+
+std::vector<ConditionWord> words_of(Owner owner, int space) {
+  std::vector<ConditionWord> words;
+  for (const QuantityWord& known : quantity_words()) {
+    if (known.owner != owner || is_count(known.quantity)) continue;
+    const std::string ending = unit_ending(known.unit);
+    words.push_back({known.word + ending, &known, -1});
+    if (!known.has_direction) continue;
+    int axis = 0;
+    for (const std::string& letter : axis_words(space)) {
+      words.push_back({std::string(known.word) + "_" + letter + ending, &known, axis++});
+    }
+  }
+  return words;
+}
+
+class ConditionReader {
+ public:
+  ConditionReader(Assembly& assembly, const std::vector<Signal>& signals)
+      : assembly_(assembly), signals_(signals) {}
+
+  void read(std::uint32_t state_machine, const std::string& scope) {
+    scope_ = scope;
+    StateMachinePool::Bindings bindings;
+    for (const VariableReference& reference : pool().references(state_machine)) {
+      reference_ = &reference;
+      bindings.push_back(reference.owner.empty() ? of_scene() : of_something());
+    }
+    pool().bind(state_machine, std::move(bindings));
+  }
+
+ private:
+  StateMachinePool& pool() const { return assembly_.liaisons->pool(); }
+
+  /// One problem for each place, however many links a liaison has.
+  void fail(const std::string& message, const std::string& hint) {
+    const config::Place& place = reference_->place;
+    if (is_quiet_ || !reported_.insert({place.file, place.line, place.column}).second) return;
+    assembly_.problems.error(place, message, hint);
+  }
+
+  /// The value of a variable; equal ones share a number.
+  Instruction value_of(const Variable& variable) {
+    std::vector<Variable>& variables = assembly_.scene.network.variables;
+    const auto known = std::find(variables.begin(), variables.end(), variable);
+    const auto number = static_cast<std::uint32_t>(known - variables.begin());
+    if (known == variables.end()) {
+      variables.push_back(variable);
+      if (variable.quantity == Quantity::kForce)
+        assembly_.scene.network.kept_awake.push_back(variable.index);
+    }
+    return {Operation::kVariable, engine::Quantity::kDistance, 0.0, number};
+  }
+
+  Instruction of_scene() {
+    if (reference_->word == kTimeWord) {
+      Variable time;
+      time.quantity = Quantity::kTime;
+      return value_of(time);
+    }
+    const auto named = std::ranges::find(signals_, reference_->word, &Signal::name);
+    if (named == signals_.end()) return {};  // its problem has been reported
+    if (is_count(named->quantity)) {
+      fail("the signal '" + named->name + "' counts pieces or bonds, which no condition asks for",
+           "ask for the state of a named link");
+      return {};
+    }
+    return value_of(*named);
+  }
+
+  Instruction of_something() {
+    is_quiet_ =
+        !reference_->state.empty();  // the word beside it reports what is wrong with the link
+    const Instruction instruction = read_something();
+    is_quiet_ = false;
+    return instruction;
+  }
+
+  Instruction read_something() {
+    const std::optional<Selection> picked = pick();
+    if (!picked) return {};
+    const bool is_link = picked->kind == Named::kLinks;
+    const std::uint32_t first = picked->indices.front();
+    if (picked->count() != 1) {
+      fail("a condition asks for one MAT or one link, and '" + reference_->owner + "' has " +
+               std::to_string(picked->count()),
+           "pick one: " + assembly_.names.word_of(first, is_link) + "." + reference_->word);
+      return {};
+    }
+    Variable variable;
+    variable.index = first;
+    Owner owner = Owner::kMat;
+    if (is_link) {
+      variable.kind = kind_of_link(first);
+      variable.index = index_of_link(first);
+      owner = owner_of(variable.kind);
+    }
+    if (!read_quantity(owner, variable)) return {};
+    return reference_->state.empty() ? value_of(variable) : number_of_state(variable.index);
+  }
+
+  bool read_quantity(Owner owner, Variable& variable) {
+    const std::vector<ConditionWord> words = words_of(owner, assembly_.scene.space());
+    const auto known = std::ranges::find(words, reference_->word, &ConditionWord::text);
+    if (known == words.end()) {
+      std::vector<std::string> texts;
+      std::string list;
+      for (const ConditionWord& word : words) {
+        texts.push_back(word.text);
+        list += (list.empty() ? "" : ", ") + word.text;
+      }
+      const std::string hint = config::did_you_mean(reference_->word, texts);
+      fail(std::string(name_of(owner)) + " has no quantity '" + reference_->word +
+               "' for a condition",
+           hint.empty() ? "it has " + list : hint);
+      return false;
+    }
+    variable.quantity = known->quantity->quantity;
+    if (!known->quantity->has_direction) return true;
+    if (known->axis >= 0) {
+      variable.direction = engine::Vec3::Unit(known->axis);
+      return true;
+    }
+    if (take_own_direction(assembly_.scene, variable)) return true;
+    fail("'" + reference_->owner + "' has no axis of its own, so '" + reference_->word +
+             "' has no direction",
+         "write the axis: " + std::next(known)->text);
+    return false;
+  }
+
+  Instruction number_of_state(std::uint32_t link) {
+    is_quiet_ = false;
+    const std::uint32_t index = assembly_.scene.network.state_links[link].state_machine;
+    const auto& states = pool().state_machines()[index].states;
+    const auto named = std::ranges::find(states, reference_->state, &engine::LinkState::name);
+    if (named == states.end()) {
+      std::vector<std::string> names;
+      std::string list;
+      for (const engine::LinkState& state : states) {
+        names.push_back(state.name);
+        list += (list.empty() ? "" : ", ") + state.name;
+      }
+      const std::string hint = config::did_you_mean(reference_->state, names);
+      fail("'" + reference_->owner + "' has no state '" + reference_->state + "'",
+           hint.empty() ? "it has " + list : hint);
+    }
+    const auto number = static_cast<double>(named - states.begin());
+    return {Operation::kConstant, engine::Quantity::kDistance, number, 0};
+  }
+
+  /// What the reference is of: a name of the part where the link stands, or one of the scene.
+  std::optional<Selection> pick() {
+    if (!scope_.empty()) {
+      Problems in_part;
+      std::optional<Selection> picked;
+      bool is_there = false;
+      {
+        const Names::Scope inside(assembly_.names, scope_.substr(0, scope_.size() - 1));
+        picked = select_from(in_part);
+        is_there = assembly_.names.find(first_name()) != nullptr;
+      }
+      if (picked) return picked;
+      if (is_there) return refused(in_part);
+    }
+    Problems in_scene;
+    std::optional<Selection> picked = select_from(in_scene);
+    return picked ? picked : refused(in_scene);
+  }
+
+  std::string first_name() const {
+    return reference_->owner.substr(0, reference_->owner.find_first_of(".["));
+  }
+
+  std::optional<Selection> select_from(Problems& problems) {
+    return select(config::Value::scalar(reference_->owner, reference_->place),
+                  "what a condition asks for", true, assembly_.names, problems);
+  }
+
+  std::nullopt_t refused(const Problems& problems) {
+    if (!problems.has_errors()) return std::nullopt;  // of what has a problem of its own
+    const std::string& name = reference_->owner;
+    if (assembly_.named_sets.contains(scope_ + name) || assembly_.named_sets.contains(name)) {
+      fail("'" + name + "' is a liaison of sets, and a condition asks for one MAT or one link", "");
+      return std::nullopt;
+    }
+    const config::Problem& problem = problems.all().front();
+    const std::string first = first_name();
+    const std::vector<std::string> words = assembly_.names.words(true);
+    const auto inner = std::ranges::find_if(
+        words, [&](const std::string& word) { return word.ends_with("." + first); });
+    const bool is_inner = assembly_.names.find(first) == nullptr && inner != words.end();
+    const std::string hint = is_inner ? "it stands in a part: write " + *inner +
+                                            name.substr(first.size()) + "." + reference_->word
+                                      : problem.hint;
+    fail(problem.message, hint);
+    return std::nullopt;
+  }
+
+  Assembly& assembly_;
+  const std::vector<Signal>& signals_;
+  std::set<std::tuple<std::string, int, int>> reported_;
+  bool is_quiet_ = false;
+  const VariableReference* reference_ = nullptr;  // that is read
+  std::string scope_;                             // of its link
+};
+
+}  // namespace
+
+void read_conditions(Assembly& assembly, const std::vector<Signal>& signals) {
+  ConditionReader reader(assembly, signals);
+  std::vector<std::string> scopes(assembly.liaisons->pool().state_machines().size());
+  for (const auto& [origin, index] : assembly.liaisons->pool().origins()) {
+    scopes[index] = origin.scope;
+  }
+  for (std::uint32_t index = 0; index < scopes.size(); ++index) reader.read(index, scopes[index]);
+}
+
+}  // namespace cordis::scene
