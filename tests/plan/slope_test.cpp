@@ -79,6 +79,20 @@ TEST(Slope, IsInUncertaintyOfWhatPullsWhereItsEndsMeetAndTurns) {
   EXPECT_EQ(largest_slope(contact(40.0), -0.02, 3, Reach{0.3}).uncertainty, nullptr);
 }
 
+TEST(Slope, IsInUncertaintyOfWhatPullsThereUnlessItsOwnEndsDecideWhenItStops) {
+  engine::StateMachine stops = state_machine(40.0);
+  stops.states.emplace_back();
+  stops.states[0].last_exit = 1;
+  stops.exits.emplace_back();
+  stops.exits[0].target = 1;
+  stops.exits[0].when.code = {
+      {engine::Operation::kQuantity, engine::Quantity::kElongation, 0.0, 0}};
+  EXPECT_EQ(largest_slope(stops, -0.02, 2, Reach{0.3}).uncertainty, nullptr);
+
+  stops.exits[0].when.code = {{engine::Operation::kVariable, {}, 0.0, 0}};
+  EXPECT_NE(largest_slope(stops, -0.02, 2, Reach{0.3}).uncertainty, nullptr);
+}
+
 TEST(Slope, OfAnExpressionCountsItsSpeedAsViscosity) {
   const Term e = q(Quantity::kElongation);
   const Term v = q(Quantity::kSpeed);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim_node/scene/language/named_formula.h"
+#include "sim_node/scene/language/quantity.h"
 #include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {

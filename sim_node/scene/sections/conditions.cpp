@@ -83,7 +83,7 @@ class ConditionReader {
     const auto number = static_cast<std::uint32_t>(known - variables.begin());
     if (known == variables.end()) {
       variables.push_back(variable);
-      if (variable.quantity == Quantity::kForce)
+      if (variable.quantity == engine::VariableKind::kForce)
         assembly_.scene.network.kept_awake.push_back(variable.index);
     }
     return {Operation::kVariable, engine::Quantity::kDistance, 0.0, number};
@@ -92,7 +92,7 @@ class ConditionReader {
   Instruction of_scene() {
     if (reference_->word == kTimeWord) {
       Variable time;
-      time.quantity = Quantity::kTime;
+      time.quantity = engine::VariableKind::kTime;
       return value_of(time);
     }
     const auto named = std::ranges::find(signals_, reference_->word, &Signal::name);

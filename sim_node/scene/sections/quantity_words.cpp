@@ -7,38 +7,40 @@ namespace cordis::scene {
 
 namespace {
 
+using engine::VariableKind;
+
 constexpr std::array<QuantityWord, 31> kWords{{
-    {"position", Owner::kMat, Quantity::kPosition, "m", true},
-    {"velocity", Owner::kMat, Quantity::kVelocity, "m/s", true},
-    {"force", Owner::kMat, Quantity::kForce, "N", true},
-    {"speed", Owner::kMat, Quantity::kSpeed, "m/s", false},
-    {"distance", Owner::kLink, Quantity::kDistance, "m", false},
-    {"elongation", Owner::kLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kLink, Quantity::kTension, "N", false},
-    {"distance", Owner::kStateLink, Quantity::kDistance, "m", false},
-    {"elongation", Owner::kStateLink, Quantity::kElongation, "m", false},
-    {"speed", Owner::kStateLink, Quantity::kElongationRate, "m/s", false},
-    {"force", Owner::kStateLink, Quantity::kTension, "N", false},
-    {"state", Owner::kStateLink, Quantity::kState, "", false},
-    {"rest_length", Owner::kStateLink, Quantity::kRestLength, "m", false},
-    {"age", Owner::kStateLink, Quantity::kAge, "s", false},
-    {"pieces", Owner::kStateLink, Quantity::kPieces, "", false},
-    {"bonds", Owner::kStateLink, Quantity::kBonds, "", false},
-    {"distance", Owner::kMaxwellLink, Quantity::kDistance, "m", false},
-    {"speed", Owner::kMaxwellLink, Quantity::kElongationRate, "m/s", false},
-    {"pieces", Owner::kMat, Quantity::kPieces, "", false},
-    {"pieces", Owner::kSet, Quantity::kPieces, "", false},
-    {"bonds", Owner::kSet, Quantity::kBonds, "", false},
-    {"changes", Owner::kScene, Quantity::kChanges, "", false},
-    {"awake", Owner::kScene, Quantity::kAwake, "", false},
-    {"energy", Owner::kScene, Quantity::kEnergy, "J", false},
-    {"kinetic_energy", Owner::kScene, Quantity::kKineticEnergy, "J", false},
-    {"elastic_energy", Owner::kScene, Quantity::kElasticEnergy, "J", false},
-    {"gravity_energy", Owner::kScene, Quantity::kGravityEnergy, "J", false},
-    {"dissipated_energy", Owner::kScene, Quantity::kDissipatedEnergy, "J", false},
-    {"port_work", Owner::kScene, Quantity::kPortWork, "J", false},
-    {"switching_energy", Owner::kScene, Quantity::kSwitchingEnergy, "J", false},
+    {"position", Owner::kMat, VariableKind::kPosition, "m", true},
+    {"velocity", Owner::kMat, VariableKind::kVelocity, "m/s", true},
+    {"force", Owner::kMat, VariableKind::kForce, "N", true},
+    {"speed", Owner::kMat, VariableKind::kSpeed, "m/s", false},
+    {"distance", Owner::kLink, VariableKind::kDistance, "m", false},
+    {"elongation", Owner::kLink, VariableKind::kElongation, "m", false},
+    {"speed", Owner::kLink, VariableKind::kElongationRate, "m/s", false},
+    {"force", Owner::kLink, VariableKind::kTension, "N", false},
+    {"distance", Owner::kStateLink, VariableKind::kDistance, "m", false},
+    {"elongation", Owner::kStateLink, VariableKind::kElongation, "m", false},
+    {"speed", Owner::kStateLink, VariableKind::kElongationRate, "m/s", false},
+    {"force", Owner::kStateLink, VariableKind::kTension, "N", false},
+    {"state", Owner::kStateLink, VariableKind::kState, "", false},
+    {"rest_length", Owner::kStateLink, VariableKind::kRestLength, "m", false},
+    {"age", Owner::kStateLink, VariableKind::kAge, "s", false},
+    {"pieces", Owner::kStateLink, VariableKind::kPieces, "", false},
+    {"bonds", Owner::kStateLink, VariableKind::kBonds, "", false},
+    {"distance", Owner::kMaxwellLink, VariableKind::kDistance, "m", false},
+    {"speed", Owner::kMaxwellLink, VariableKind::kElongationRate, "m/s", false},
+    {"pieces", Owner::kMat, VariableKind::kPieces, "", false},
+    {"pieces", Owner::kSet, VariableKind::kPieces, "", false},
+    {"bonds", Owner::kSet, VariableKind::kBonds, "", false},
+    {"changes", Owner::kScene, VariableKind::kChanges, "", false},
+    {"awake", Owner::kScene, VariableKind::kAwake, "", false},
+    {"energy", Owner::kScene, VariableKind::kEnergy, "J", false},
+    {"kinetic_energy", Owner::kScene, VariableKind::kKineticEnergy, "J", false},
+    {"elastic_energy", Owner::kScene, VariableKind::kElasticEnergy, "J", false},
+    {"gravity_energy", Owner::kScene, VariableKind::kGravityEnergy, "J", false},
+    {"dissipated_energy", Owner::kScene, VariableKind::kDissipatedEnergy, "J", false},
+    {"port_work", Owner::kScene, VariableKind::kPortWork, "J", false},
+    {"switching_energy", Owner::kScene, VariableKind::kSwitchingEnergy, "J", false},
 }};
 
 }  // namespace
@@ -90,7 +92,7 @@ bool take_own_direction(const Scene& scene, engine::Variable& variable) {
     const bool is_here = port.mat == variable.index || port.tool == variable.index;
     if (!is_here || port.directions.size() != 1) continue;
     variable.direction = port.directions.front();
-    if (variable.quantity == Quantity::kPosition)
+    if (variable.quantity == VariableKind::kPosition)
       variable.offset = variable.direction.dot(port.rest);
     return true;
   }

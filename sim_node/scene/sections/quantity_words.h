@@ -16,7 +16,7 @@ enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kSet, kScene };
 struct QuantityWord {
   const char* word;
   Owner owner;
-  Quantity quantity;
+  engine::VariableKind quantity;
   const char* unit;
   bool has_direction;
 };
