@@ -15,12 +15,14 @@
 #include "cli/lab/lab_verb.h"
 #include "cli/list/list_verb.h"
 #include "cli/merge/merge_verb.h"
+#include "cli/new/new_verb.h"
 #include "cli/play/play_verb.h"
 #include "cli/plot/plot_verb.h"
 #include "cli/record/record_verb.h"
 #include "cli/recover/recover_verb.h"
 #include "cli/resim/resim_verb.h"
 #include "cli/run/run_verb.h"
+#include "cli/schema/schema_verb.h"
 #include "cli/simulate/simulate_verb.h"
 #include "cli/test/test_verb.h"
 
@@ -42,6 +44,8 @@ void add_verbs(CommandLine& line) {
   add_get_verb(line);
   add_ctl_verb(line);
   add_check_verb(line);
+  add_new_verb(line);
+  add_schema_verb(line);
   add_info_verb(line);
   add_cut_verb(line);
   add_merge_verb(line);

@@ -1,10 +1,16 @@
 // cli/check/check_verb.cpp
 #include "cli/check/check_verb.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <stdexcept>
+
+#include <nlohmann/json.hpp>
 
 #include "cli/check/check_report.h"
 #include "cli/check/scene_check.h"
@@ -21,15 +27,18 @@
 namespace cordis::cli {
 namespace {
 
-void write_json(const SceneCheck& check) {
-  const std::string json = json_of(check);
-  if (check.options.json_file == "-") {
+/// Takes the report of a file for a program.
+using PutJson = std::function<void(const std::string& json)>;
+
+void write_json(const std::string& file_name, const std::string& json) {
+  if (file_name.empty()) return;
+  if (file_name == "-") {
     std::fputs(json.c_str(), stdout);
     return;
   }
-  std::ofstream file(check.options.json_file);
+  std::ofstream file(file_name);
   file << json << std::flush;
-  if (!file) throw std::runtime_error("cannot write " + check.options.json_file);
+  if (!file) throw std::runtime_error("cannot write " + file_name);
 }
 
 /// Lets the nodes beside sim_node check their files, as a run does before it begins.
@@ -43,16 +52,92 @@ int check_other_nodes(const config::Launch& launch, const std::vector<std::strin
   return check_nodes(plan, signals).value_or(kSuccess);
 }
 
-int run(const CheckOptions& options) {
+int check_take(const CheckOptions& options, const PutJson& put_json) {
+  const TakeReport report = check_take_file(options.file);
+  if (options.json_file != "-") node::print_text(stdout, report.text);
+  put_json(report.json);
+  return report.whole ? kSuccess : kBadInput;
+}
+
+int check_file(const CheckOptions& options, const PutJson& put_json) {
+  if (!options.text && is_take(options.file)) return check_take(options, put_json);
   const SceneCheck check = check_scene(options);
   if (options.json_file != "-") node::print_text(stdout, text_of(check));
-  if (!options.json_file.empty()) write_json(check);
+  put_json(json_of(check));
   const std::string problems = check.problems.text();
   std::fflush(stdout);
   if (!problems.empty()) node::print_text(stderr, problems + "\n");
-  const bool asks_others = check.launch && !options.plan_alone;
+  const bool asks_others = check.launch && !options.plan_alone && !options.text;
   const int others = asks_others ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
   return check.problems.has_errors() ? kBadInput : others;
+}
+
+/// A file that cannot be checked, for a person and for a program.
+int report_failure(const std::string& file, const std::string& reason, int code,
+                   const PutJson& put_json) {
+  std::fflush(stdout);
+  node::print_text(stderr, reason + "\n");
+  put_json(nlohmann::json{{"file", file}, {"error", reason}}.dump(
+               2, ' ', false, nlohmann::json::error_handler_t::replace) +
+           "\n");
+  return code;
+}
+
+/// One report per file; what is wrong with one hinders no other. @return the highest exit code
+int check_files(const CheckOptions& common, const std::vector<CheckOptions>& files) {
+  std::string list;
+  const PutJson put_json = [&list](const std::string& json) {
+    list += (list.empty() ? "[\n" : ",\n") + json.substr(0, json.size() - 1);
+  };
+  int worst = kSuccess;
+  for (const CheckOptions& options : files) {
+    if (&options != &files.front() && common.json_file != "-") std::puts("");
+    int code = kSuccess;
+    try {
+      code = check_file(options, put_json);
+    } catch (const config::ConfigError& error) {
+      code = report_failure(options.file, error.what(), kBadInput, put_json);
+    } catch (const UsageError& error) {
+      code = report_failure(options.file, error.what(), kBadInput, put_json);
+    } catch (const std::exception& error) {
+      code = report_failure(options.file, error.what(), kFailure, put_json);
+    }
+    worst = std::max(worst, code);
+  }
+  write_json(common.json_file, list + "\n]\n");
+  return worst;
+}
+
+std::string standard_input() {
+  constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+  std::string text;
+  std::array<char, 65536> block{};
+  for (std::size_t count = 1; count > 0 && text.size() <= kMaxBytes;) {
+    count = std::fread(block.data(), 1, block.size(), stdin);
+    text.append(block.data(), count);
+  }
+  if (text.size() > kMaxBytes) throw UsageError("standard input is larger than 16 MiB");
+  return text;
+}
+
+/// Splits the words into files and changes of launch files.
+std::vector<CheckOptions> files_of(const CheckOptions& common,
+                                   const std::vector<std::string>& words) {
+  std::vector<std::string> names{common.file};
+  CheckOptions options = common;
+  for (const std::string& word : words) {
+    const bool changes = word.find('=') != std::string::npos && !std::filesystem::exists(word);
+    (changes ? options.overrides : names).push_back(word);
+  }
+  if (std::ranges::count(names, "-") > 1) throw UsageError("standard input, -, can be read once");
+  std::vector<CheckOptions> files;
+  for (const std::string& name : names) {
+    options.file = name;
+    options.text.reset();
+    if (name == "-") options.text = standard_input();
+    files.push_back(options);
+  }
+  return files;
 }
 
 }  // namespace
@@ -61,17 +146,20 @@ void add_check_verb(CommandLine& line) {
   struct CheckWords {
     CheckOptions options;
     std::string band;
+    std::vector<std::string> more;
   };
   auto words = std::make_shared<CheckWords>();
   CheckOptions& options = words->options;
-  Verb& verb = line.verb("check", "SCENE|LAUNCH|TAKE [words] [options]",
+  Verb& verb = line.verb("check", "SCENE|LAUNCH|TAKE ... [words] [options]",
                          "Say what a scene promises before it runs, and where it would fail; or "
                          "whether a take is whole");
   verb.required_word("SCENE|LAUNCH|TAKE", options.file,
-                     "A scene; a launch file: then with its devices and clock; or a take");
-  verb.more_words("words", options.overrides,
-                  "Change a launch file, as for `cordis run`: name.key=value");
-  verb.option("--json", "FILE", options.json_file, "Also write it for a program; - for stdout");
+                     "A scene; a launch file: then with its devices and clock; a take; or - for "
+                     "standard input");
+  verb.more_words("words", words->more,
+                  "More files; or changes of a launch file, as for `cordis run`: name.key=value");
+  verb.option("--json", "FILE", options.json_file,
+              "Also write it for a program; - for stdout. Of several files it is a list");
   verb.option("--band", "HZ", words->band,
               "Where pitch and decay are evaluated [that of the scene, or 100]");
   verb.flag("--plan", options.plan_alone,
@@ -83,18 +171,25 @@ void add_check_verb(CommandLine& line) {
       "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "What `cordis run` would refuse or warn of stands below the report, in the same words.\n"
       "Of a take every CRC, index and count is checked; it says at which byte what is wrong.\n"
+      "Paths in a file on standard input begin in the present folder; of a launch file there the\n"
+      "scene and its devices are checked, and no other nodes.\n"
       "Exit code: 0 `cordis run` plays it, or the take is whole, 1 a check failed itself,\n"
-      "2 `cordis run` refuses it, or the take is damaged.\n\n"
+      "2 `cordis run` refuses it, or the take is damaged; of several files the highest.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/plasticine.yaml\n"
       "  cordis check launch_configs/scenes/plucked_string.yaml\n"
       "  cordis check launch_configs/scenes/membrane.yaml --band 40\n"
+      "  cordis check launch_configs/plucked_string.yaml launch_configs/bowed_string.yaml --json "
+      "-\n"
+      "  cordis check - < launch_configs/scenes/mobile.yaml\n"
       "  cordis check take.mcap\n");
   verb.action([words] {
     CheckOptions& asked = words->options;
-    if (is_take(asked.file)) return check_take_file(asked.file, asked.json_file);
     if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
-    return run(asked);
+    const std::vector<CheckOptions> files = files_of(asked, words->more);
+    if (files.size() > 1) return check_files(asked, files);
+    return check_file(files.front(),
+                      [&](const std::string& json) { write_json(asked.json_file, json); });
   });
 }
 

@@ -13,6 +13,7 @@
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
+#include "sim_node/scene/sections/scene_reader.h"
 #include "sim_node/sim_config.h"
 
 namespace cordis::cli {
@@ -39,7 +40,8 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
 /// The launch file of these options; empty when their file is a scene.
 std::optional<config::Launch> launch_of(const CheckOptions& options) {
   config::Problems problems;
-  const config::Value root = config::load_file(options.file, problems);
+  const config::Value root = options.text ? config::load_text(*options.text, options.file, problems)
+                                          : config::load_file(options.file, problems);
   problems.throw_if_any();
   if (!config::is_launch_file(root)) {
     if (!options.overrides.empty())
@@ -47,7 +49,10 @@ std::optional<config::Launch> launch_of(const CheckOptions& options) {
                                options.file + " is a scene");
     return {};
   }
-  config::Launch launch = config::load_launch(options.file, options.overrides, problems);
+  config::Launch launch =
+      options.text
+          ? config::load_launch_text(*options.text, options.file, options.overrides, problems)
+          : config::load_launch(options.file, options.overrides, problems);
   config::check_domain(launch, problems);
   problems.throw_if_any();
   return launch;
@@ -88,7 +93,11 @@ SceneCheck check_scene(const CheckOptions& options) {
     force = force || section.force;
     check.delay_periods = sim::delay_periods_of(launch->clock);
   }
-  sim::PlannedScene planned = sim::plan_scene(scene_file, referrer, check.problems);
+  sim::PlannedScene planned =
+      options.text && !launch
+          ? sim::plan_scene(scene::load_scene_text(*options.text, scene_file, check.problems),
+                            check.problems)
+          : sim::plan_scene(scene_file, referrer, check.problems);
   check.problems.throw_if_any();
   check.scene = std::move(planned.scene);
   check.choice = std::move(planned.rate);

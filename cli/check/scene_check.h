@@ -19,6 +19,7 @@ namespace cordis::cli {
 /// What a person asked for.
 struct CheckOptions {
   std::string file;                    ///< a scene, or a launch file
+  std::optional<std::string> text;     ///< of the file, where it is no file: "-", standard input
   std::vector<std::string> overrides;  ///< of a launch file: words `name.key=value`
   std::string json_file;               ///< empty: none; "-": instead of the text
   /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.

@@ -1,18 +1,12 @@
 // cli/check/take_report.cpp
 #include "cli/check/take_report.h"
 
-#include <cstdio>
-#include <fstream>
-#include <stdexcept>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_line.h"
-#include "cli/exit_code.h"
 #include "cli/take_file.h"
 #include "node/config/count_text.h"
-#include "node/terminal_text.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/take_check.h"
 
@@ -46,21 +40,13 @@ std::string fault_json(const std::string& file, const mcap::TakeCheck& check) {
 
 }  // namespace
 
-int check_take_file(const std::string& file, const std::string& json_file) {
-  mcap::TakeCheck check;
+TakeReport check_take_file(const std::string& file) {
   try {
-    check = mcap::check_take(file);
+    const mcap::TakeCheck check = mcap::check_take(file);
+    return {fault_text(file, check), fault_json(file, check), check.faults.empty()};
   } catch (const mcap::FileError& error) {
     throw UsageError(error.what());
   }
-  if (json_file != "-") node::print_text(stdout, fault_text(file, check));
-  if (json_file == "-") std::fputs(fault_json(file, check).c_str(), stdout);
-  if (!json_file.empty() && json_file != "-") {
-    std::ofstream out(json_file);
-    out << fault_json(file, check) << std::flush;
-    if (!out) throw std::runtime_error("cannot write " + json_file);
-  }
-  return check.faults.empty() ? kSuccess : kBadInput;
 }
 
 }  // namespace cordis::cli

@@ -5,8 +5,14 @@
 
 namespace cordis::cli {
 
-/// Checks a take and says what was found. @param json_file  empty: none; "-": instead of the text
-/// @return the exit code
-int check_take_file(const std::string& file, const std::string& json_file);
+/// What was found out about a take.
+struct TakeReport {
+  std::string text;  ///< for a person
+  std::string json;  ///< for a program
+  bool whole = false;
+};
+
+/// Checks a take. @throws UsageError when it cannot be read
+TakeReport check_take_file(const std::string& file);
 
 }  // namespace cordis::cli

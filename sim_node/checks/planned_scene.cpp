@@ -12,7 +12,11 @@ namespace cordis::sim {
 
 PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
                         config::Problems& problems) {
-  PlannedScene planned{scene::load_scene(file, problems, referrer), {}};
+  return plan_scene(scene::load_scene(file, problems, referrer), problems);
+}
+
+PlannedScene plan_scene(scene::Scene scene, config::Problems& problems) {
+  PlannedScene planned{std::move(scene), {}};
   if (problems.has_errors()) return planned;
   planned.scene = plan::reduce(std::move(planned.scene), problems);
   if (!problems.has_errors()) planned.rate = select_rate(planned.scene, problems);

@@ -20,4 +20,7 @@ struct PlannedScene {
 PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
                         config::Problems& problems);
 
+/// Reduces a scene that has been read, and selects its rate. `problems` are those of the reading.
+PlannedScene plan_scene(scene::Scene scene, config::Problems& problems);
+
 }  // namespace cordis::sim

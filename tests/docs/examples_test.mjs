@@ -276,6 +276,12 @@ test('cordis check', async () => {
   assert.ok(lines.length >= 3);
 });
 
+test('cordis new and schema', async () => {
+  for (const verb of ['new', 'schema']) {
+    for (const [line, origin] of ofVerb(verb)) await runs(line, origin);
+  }
+});
+
 test('cordis cut, merge, info and recover', async () => {
   for (const verb of ['cut', 'merge', 'info', 'recover']) {  // a merge takes what a cut has made
     for (const [line, origin] of ofVerb(verb).filter(([text]) => isOfTake(text))) await runs(line, origin);
@@ -351,7 +357,7 @@ test('cordis test lists what it would run', async () => {
 test('no verb has examples that nothing runs', () => {
   const RUN = [
     'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
-    'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot',
+    'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot', 'new', 'schema',
   ];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
   for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);

@@ -48,6 +48,9 @@ if [[ -f $build/share/cordis/page/index.html ]]; then
   [[ -f $scratch/usr/share/cordis/page/index.html ]] || fail "the page is not installed"
   if grep -q 'page not built' "$scratch/run"; then fail "viz_node does not find the installed page"; fi
 fi
+"$scratch/usr/bin/cordis" new launch "$scratch/begun" >/dev/null
+schema=$(sed -n '1s/.*schema=//p' "$scratch/begun.yaml")
+[[ $schema == */usr/share/cordis/* && -s $schema ]] || fail "no schema for editors is installed: $schema"
 [[ -f $scratch/usr/share/cordis/idl/gesture.idl ]] || fail "the messages are not installed"
 example=$scratch/usr/share/cordis/examples/foreign_device
 [[ -f $example/device.c ]] || fail "the device of another vendor is not installed"
