@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/config/number.h"
+#include "sim_node/checks/settling.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/run/describe.h"
 #include "sim_node/scene/naming.h"
@@ -62,6 +63,7 @@ void SessionControl::publish_scene(const scene::Scene& scene, std::uint64_t vers
   spdlog::info("scene '{}': {}, {} steps per second, {} per gesture", scene.name,
                scene::size_text(scene), scene.step_rate_hz,
                config::number_text(scene.step_rate_hz / scene.gesture_rate_hz));
+  if (scene.settled) spdlog::info("settled {}", settled_text(scene));
 }
 
 }  // namespace cordis::sim

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "node/config/count_text.h"
+#include "sim_node/checks/settling.h"
 
 namespace cordis::cli {
 namespace {
@@ -362,6 +363,7 @@ std::string text_of(const SceneCheck& check) {
                       engine::to_string(scene.network.integrator), scene.step_rate_hz);
   text += reductions_text(check.scene.reductions);
   text += freezing_text(scene.network.freeze_tolerance);
+  if (scene.settled) text += "settled     " + sim::settled_text(scene) + "\n";
   text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
   for (const PortCheck& port : check.ports) text += port_text(check, port);
   return check.measured_steps > 0 ? text + load_text(check) : text;
@@ -393,6 +395,12 @@ std::string json_of(const SceneCheck& check) {
                       {"ports", ports_json(check)},
                       {"problems", problems_json(check.problems)},
                       {"reductions", reductions_json(check.scene.reductions)}};
+  if (const auto& settled = check.scene.settled) {
+    json["settled"] = {{"steps", settled->steps},
+                       {"force_n", settled->force},
+                       {"moved_m", settled->way},
+                       {"mat", called(scene::call_mat(check.scene, settled->mat))}};
+  }
   if (check.measured_steps > 0) json["load"] = load_json(check);
   const double tolerance = check.scene.network.freeze_tolerance;
   if (tolerance > 0.0) {

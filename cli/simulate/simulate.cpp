@@ -17,6 +17,7 @@
 #include "cli/simulate/session_table.h"
 #include "cli/table/column_summary.h"
 #include "cli/table/sound_file.h"
+#include "sim_node/checks/settling.h"
 
 namespace cordis::cli {
 namespace {
@@ -130,6 +131,7 @@ class Recording {
         {"failure", result.failure},
         {"passed_bound", result.bound},
         {"driven", result.drives},
+        {"settled", result.settled},
         {"wall_s", result.wall_s},
         {"energy_j", energy.total()},
         {"energy_drift", energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0},
@@ -164,6 +166,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   Recording recording(options, session);
   SimulateResult result;
   result.warnings = session.warnings();
+  result.settled = sim::settled_text(session.scene());
 
   std::function<void()> after_step;
   if (recording.wants_steps()) after_step = [&recording] { recording.take_step(); };

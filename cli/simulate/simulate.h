@@ -21,6 +21,7 @@ struct SimulateOptions : TableOptions {
 /// What came of it.
 struct SimulateResult {
   std::vector<std::string> warnings;
+  std::string settled;            ///< sim::settled_text()
   std::string failure;            ///< empty, or why it ended before its time
   std::string bound;              ///< OfflineSession::bound_text()
   std::string drives;             ///< sim::drive_trouble_text()

@@ -17,8 +17,8 @@ namespace cordis::cli {
 namespace {
 
 std::string report_of(const SimulateResult& result) {
-  std::string text =
-      fmt::format("simulated {:.6g} s in {:.3g} s", result.simulated_s, result.wall_s);
+  std::string text = result.settled.empty() ? "" : "settled " + result.settled + "\n";
+  text += fmt::format("simulated {:.6g} s in {:.3g} s", result.simulated_s, result.wall_s);
   if (result.wall_s > 0.0)
     text += fmt::format(", {:.3g} times as fast as real time", result.simulated_s / result.wall_s);
   if (result.row_count > 0) text += "; " + config::count_text(result.row_count, "row");

@@ -1,4 +1,4 @@
-// sim_node/checks/planned_scene.h -- a scene file as it will run: reduced, and with its rate.
+// sim_node/checks/planned_scene.h -- a scene file as it will run: reduced, with its rate, settled.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ struct PlannedScene {
   std::optional<plan::RateSelection> rate;  ///< for the `accuracy` of the scene
 };
 
-/// Reads a scene file, takes out what `reduce` names, and selects its rate. Usable when there is no
+/// Reads a scene file, takes out what `reduce` names, selects its rate, and settles it. Usable when there is no
 /// problem. @param referrer  the place that names the file, if any
 PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
                         config::Problems& problems);

@@ -3,10 +3,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 #include <variant>
 
+#include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/plan/stability/start_pairs.h"
@@ -28,12 +28,6 @@ struct Overlap {
   double force = 0.0;     // [N]
   double way = 0.0;       // in the first step, both together [m]
 };
-
-std::string short_text(double number) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", number);
-  return text;
-}
 
 double inverse_mass(const NetworkDescription& network, std::uint32_t mat) {
   const engine::Mat& matter = network.mats[mat];

@@ -6,6 +6,7 @@
 
 #include "node/config/count_text.h"
 #include "node/config/mapping_reader.h"
+#include "sim_node/checks/settling.h"
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/run/link_states.h"
 
@@ -109,6 +110,7 @@ PreparedRequest RequestMaker::set(const std::vector<NewValue>& values, const Che
     *scene = plan::reduce(std::move(*scene), problems);
     if (problems.has_errors()) throw std::invalid_argument(problems.all().front().message);
     scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
+    keep_settled(*scene_, *scene);
   }
   if (check) check(*scene, problems);
   if (problems.has_errors()) {

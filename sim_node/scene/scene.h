@@ -88,6 +88,21 @@ struct Accuracy {
   config::Place place;
 };
 
+/// What a scene that is at rest when it starts asks for: its `settle`.
+struct Settle {
+  double until = 0.0;                 ///< no mass is pulled by more [N]
+  std::uint64_t max_steps = 200'000;  ///< it takes no more of them
+  config::Place place;
+};
+
+/// What settling has moved.
+struct SettledStart {
+  std::uint64_t steps = 0;
+  double force = 0.0;     ///< the largest that is left [N]
+  double way = 0.0;       ///< the largest of a MAT [m]
+  std::uint32_t mat = 0;  ///< that has gone it
+};
+
 /// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
 struct ReductionOptions {
   bool parallel = false;   ///< linear links between the same two MATs
@@ -135,8 +150,10 @@ struct Scene {
   std::vector<LayoutPoint> layout;   ///< per MAT in a 1-D scene, else empty
   std::optional<Subspace> subspace;  ///< by a reduction; then there is no layout
   ReductionOptions reduce;
-  std::vector<Reduction> reductions;   ///< that were made
-  std::shared_ptr<const Scene> whole;  ///< before they were made; nullptr when none was
+  std::optional<Settle> settle;
+  std::optional<SettledStart> settled;  ///< once it has been
+  std::vector<Reduction> reductions;    ///< that were made
+  std::shared_ptr<const Scene> whole;   ///< before they were made; nullptr when none was
 
   int space() const noexcept { return network.dimension; }
 

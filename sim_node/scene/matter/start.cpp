@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include <Eigen/Geometry>
-
 #include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
@@ -141,6 +139,12 @@ Vec3 read_spin(MappingReader& reader, int space) {
   return {0.0, 0.0, turn};
 }
 
+/// u x v
+Vec3 cross(const Vec3& u, const Vec3& v) {
+  return {u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(),
+          u.x() * v.y() - u.y() * v.x()};
+}
+
 }  // namespace
 
 StartMotion read_motion(MappingReader& reader, int space) {
@@ -154,7 +158,7 @@ bool add_motion(const StartMotion& motion, std::span<engine::Mat> mats) {
   for (engine::Mat& mat : mats) {
     if (mat.kind != MatKind::kMass) continue;
     has_mass = true;
-    mat.velocity += motion.velocity + motion.spin.cross(mat.position - centre);
+    mat.velocity += motion.velocity + cross(motion.spin, mat.position - centre);
   }
   return has_mass;
 }

@@ -25,6 +25,7 @@ using config::Value;
 constexpr double kHighestStepRate = 1.0e6;
 constexpr double kHighestGestureRate = 1.0e5;
 constexpr double kHighestFrameRate = 1.0e3;
+constexpr long kMaxSettlingSteps = 100'000'000;
 constexpr double kLongestPromise = 1.0e6;  // [s]
 
 void read_accuracy(const Value& section, Scene& scene, config::Problems& problems) {
@@ -39,6 +40,18 @@ void read_accuracy(const Value& section, Scene& scene, config::Problems& problem
   accuracy.place = reader.place();
   reader.finish();
   scene.accuracy = accuracy;
+}
+
+void read_settle(const Value& section, Scene& scene, config::Problems& problems) {
+  if (!section.exists()) return;
+  config::MappingReader reader(section, "settle", problems);
+  Settle settle;
+  settle.until = reader.required_number("until_n", Range::positive());
+  settle.max_steps = static_cast<std::uint64_t>(
+      reader.optional_integer("steps", static_cast<long>(settle.max_steps), 1, kMaxSettlingSteps));
+  settle.place = reader.place();
+  reader.finish();
+  scene.settle = settle;
 }
 
 void read_freeze(const Value& section, Scene& scene, config::Problems& problems) {
@@ -150,6 +163,7 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
       read_step(scene.accuracy ? reader.optional_mapping("step") : reader.required_mapping("step"),
                 scene, problems);
   scene.reduce = read_reduce(reader.optional_value("reduce"), scene.accuracy.has_value(), problems);
+  read_settle(reader.optional_mapping("settle"), scene, problems);
   read_content(reader, scene, problems);
   reader.finish();
   if (problems.error_count() != errors_before) return scene;

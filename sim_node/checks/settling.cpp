@@ -1,0 +1,62 @@
+// sim_node/checks/settling.cpp
+#include "sim_node/checks/settling.h"
+
+#include "node/config/count_text.h"
+#include "sim_node/checks/short_text.h"
+#include "sim_node/engine/core/assert.h"
+#include "sim_node/plan/settle.h"
+#include "sim_node/scene/naming.h"
+
+namespace cordis::sim {
+
+void settle(scene::Scene& scene, config::Problems& problems) {
+  if (!scene.settle) return;
+  CORDIS_ASSERT(scene.network.step > 0.0);
+  const scene::Settle& asked = *scene.settle;
+  const plan::Settled rest = plan::settle(scene.network, asked.until, asked.max_steps);
+  if (!rest.is_finite) {
+    problems.error(asked.place, "the scene diverges while it settles",
+                   "a higher rate_hz may hold it");
+    return;
+  }
+  if (!(rest.force < asked.until)) {
+    problems.error(asked.place,
+                   "the scene has not come to rest in " + config::count_text(rest.steps, "step") +
+                       ": " + short_text(rest.force) + " N pull " +
+                       scene::call_mat(scene, rest.pulled).name,
+                   "hold what falls or slides, or write a larger until_n or steps");
+    return;
+  }
+  scene::SettledStart moved;
+  moved.steps = rest.steps;
+  moved.force = rest.force;
+  for (std::uint32_t i = 0; i < rest.position.size(); ++i) {
+    const double way = (rest.position[i] - scene.network.mats[i].position).norm();
+    if (way > moved.way) {
+      moved.way = way;
+      moved.mat = i;
+    }
+    scene.network.mats[i].position = rest.position[i];
+  }
+  scene.settled = moved;
+}
+
+void keep_settled(const scene::Scene& settled, scene::Scene& scene) {
+  if (!settled.settled || settled.network.mats.size() != scene.network.mats.size()) return;
+  for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
+    scene.network.mats[i].position = settled.network.mats[i].position;
+  }
+  scene.settled = settled.settled;
+}
+
+std::string settled_text(const scene::Scene& scene) {
+  if (!scene.settled) return {};
+  const scene::SettledStart& moved = *scene.settled;
+  const std::string steps = config::count_text(moved.steps, "step");
+  const std::string force = short_text(moved.force) + " N pull at most";
+  if (moved.way == 0.0) return "was at rest: " + force;
+  return "in " + steps + ": " + force + "; " + scene::call_mat(scene, moved.mat).name +
+         " moved the farthest, " + short_text(moved.way) + " m";
+}
+
+}  // namespace cordis::sim

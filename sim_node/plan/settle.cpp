@@ -1,0 +1,151 @@
+// sim_node/plan/settle.cpp
+#include "sim_node/plan/settle.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "sim_node/engine/world.h"
+#include "sim_node/plan/stability/slope.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::MatKind;
+using engine::NetworkDescription;
+using engine::Vec3;
+
+/// A liaison that pulls its ends together with a force that does not change.
+engine::StateMachine pulling_with(double force) {
+  engine::Instruction constant;
+  constant.operation = engine::Operation::kConstant;
+  constant.constant = force;
+  engine::LinkState state;
+  state.elasticity = engine::Expression{{{constant}}};
+  engine::StateMachine machine;
+  machine.states = {std::move(state)};
+  return machine;
+}
+
+/// The network without all that acts only while something moves.
+NetworkDescription undamped(NetworkDescription network) {
+  network.integrator = engine::IntegratorKind::kCordis;
+  network.freeze_tolerance = 0.0;
+  network.kept_awake.clear();
+  network.medium_viscosity = 0.0;
+  network.drives.clear();
+  network.time_functions.clear();
+  for (engine::Mat& mat : network.mats) mat.velocity = Vec3::Zero();
+  for (engine::Link& link : network.links) link.viscosity = 0.0;
+  for (engine::StateMachine& state_machine : network.state_machines) {
+    state_machine = start_state_alone(state_machine);
+    state_machine.friction = {};
+    for (engine::LinkState& state : state_machine.states) {
+      state.viscosity = 0.0;
+      state.dissipation = engine::NoLaw{};
+    }
+  }
+  for (const engine::MaxwellLink& link : network.maxwell_links) {
+    if (link.start_force == 0.0) continue;
+    const auto constant = static_cast<std::uint32_t>(network.state_machines.size());
+    network.state_machines.push_back(pulling_with(link.start_force));
+    network.state_links.push_back({link.mat_a, link.mat_b, constant, 0.0});
+  }
+  network.maxwell_links.clear();
+  return network;
+}
+
+/// Weights and driven forces of the start [N], per MAT.
+std::vector<Vec3> loads_of(const NetworkDescription& network) {
+  std::vector<Vec3> load(network.mats.size(), Vec3::Zero());
+  for (const engine::Drive& drive : network.drives) {
+    if (drive.is_force) load[drive.mat] = value_at(network, drive, 0.0);
+  }
+  return load;
+}
+
+/// A network that is held still again and again.
+class Rest {
+ public:
+  explicit Rest(const NetworkDescription& network)
+      : network_(undamped(network)), driven_(loads_of(network)) {}
+
+  /// Holds it still where it is, and does a first step: the forces are those of this pose.
+  void hold() {
+    if (world_) {
+      for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+        network_.mats[i].position = world_->position(i);
+      }
+    }
+    world_.emplace(std::make_shared<const engine::Network>(network_));
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      if (!driven_[i].isZero(0.0)) world_->set_external_force(i, driven_[i]);
+    }
+    step();
+  }
+
+  /// One step. @return false where a position is not finite any more
+  bool step() {
+    ++steps_;
+    const engine::StepReport report = world_->step();
+    if (report.wants_room) world_->make_room();
+    is_finite_ = is_finite_ && report.non_finite_mats == 0;
+    return is_finite_;
+  }
+
+  /// Twice that [J].
+  double kinetic_energy() const {
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      const engine::Mat& mat = network_.mats[i];
+      if (mat.kind == MatKind::kMass) sum += mat.mass * world_->velocity(i).squaredNorm();
+    }
+    return sum;
+  }
+
+  /// What pulls the most just after hold(), and where all is.
+  Settled pose() const {
+    Settled pose;
+    pose.steps = steps_;
+    pose.is_finite = is_finite_;
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      const engine::Mat& mat = network_.mats[i];
+      pose.position.push_back(mat.position);
+      if (mat.kind != MatKind::kMass) continue;
+      const Vec3 load = mat.mass * network_.gravity_on(mat) + driven_[i];
+      const double force = (world_->link_force(i) + load).norm();
+      if (!(force > pose.force)) continue;
+      pose.force = force;
+      pose.pulled = i;
+    }
+    return pose;
+  }
+
+  std::uint64_t steps() const noexcept { return steps_; }
+
+ private:
+  NetworkDescription network_;
+  std::vector<Vec3> driven_;  // force on each [N]
+  std::optional<engine::World> world_;
+  std::uint64_t steps_ = 0;
+  bool is_finite_ = true;
+};
+
+}  // namespace
+
+Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+  Rest rest(network);
+  for (;;) {
+    rest.hold();
+    Settled pose = rest.pose();
+    if (!pose.is_finite || pose.force < until || rest.steps() >= max_steps) return pose;
+    double before = 0.0;
+    for (double now = rest.kinetic_energy(); now >= before && rest.steps() < max_steps;
+         now = rest.kinetic_energy()) {
+      before = now;
+      if (!rest.step()) return rest.pose();
+    }
+  }
+}
+
+}  // namespace cordis::plan

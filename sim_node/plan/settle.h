@@ -1,0 +1,28 @@
+// sim_node/plan/settle.h -- the poses in which a network is at rest.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/description/network.h"
+
+namespace cordis::plan {
+
+/// What came of settling.
+struct Settled {
+  std::vector<engine::Vec3> position;  ///< of each MAT [m]
+  double force = 0.0;                  ///< the largest on a mass there [N]
+  std::uint32_t pulled = 0;            ///< the mass that has it
+  std::uint64_t steps = 0;             ///< that were computed
+  bool is_finite = true;               ///< false: it diverged; the rest says nothing then
+};
+
+/// Lets a network come to rest from its start: by `cordis` at its step, without dampers, medium and
+/// velocities, and held still whenever its kinetic energy falls (kinetic damping). Each liaison stays in
+/// its state of the start, without friction; a Maxwell element keeps its start force. Ports and what is
+/// driven stay, and driven forces are those of the start. The same bits on every vector width.
+/// @param until  it ends once no mass is pulled by more [N]
+/// @param max_steps  it ends after so many, settled or not
+Settled settle(const engine::NetworkDescription& network, double until, std::uint64_t max_steps);
+
+}  // namespace cordis::plan

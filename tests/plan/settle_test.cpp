@@ -1,0 +1,165 @@
+// tests/plan/settle_test.cpp -- where a network comes to rest.
+#include "sim_node/plan/settle.h"
+
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/engine/world.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::MatKind;
+using engine::NetworkDescription;
+using engine::Vec3;
+
+constexpr double kMass = 0.01;      // [kg]
+constexpr double kStiffness = 500;  // [N/m]
+constexpr double kRest = 0.1;       // [m]
+constexpr double kG = 9.81;         // [m/s^2]
+
+NetworkDescription chain(std::size_t count, bool both_ends) {
+  NetworkDescription network;
+  network.dimension = 2;
+  network.step = 1e-3;
+  network.gravity = Vec3(0, -kG, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_fixed = i == 0 || (both_ends && i + 1 == count);
+    const Vec3 place(kRest * static_cast<double>(i), 0, 0);
+    network.mats.push_back(
+        {is_fixed ? MatKind::kFixed : MatKind::kMass, is_fixed ? 0.0 : kMass, place, Vec3::Zero()});
+    if (i == 0) continue;
+    const auto b = static_cast<std::uint32_t>(i);
+    network.links.push_back({b - 1, b, kStiffness, 0.02, kRest});
+  }
+  return network;
+}
+
+TEST(Settle, HangsAChainBelowItsNail) {
+  NetworkDescription network = chain(11, false);
+  for (engine::Mat& mat : network.mats) mat.position = Vec3(0, -mat.position.x(), 0);
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  ASSERT_LT(rest.force, 1e-9);
+  double y = 0.0;
+  for (std::size_t i = 1; i < 11; ++i) {
+    const double carried = static_cast<double>(11 - i) * kMass * kG;
+    y -= kRest + carried / kStiffness;
+    // each link is out by what is left over K, 1e-9 / 500 m for each mass below it
+    EXPECT_NEAR(rest.position[i].y(), y, 11 * 11 * 1e-9 / kStiffness);
+    EXPECT_NEAR(rest.position[i].x(), 0.0, 1e-9);
+  }
+}
+
+TEST(Settle, HangsAChainBetweenTwoNailsAsAnElasticCatenary) {
+  const NetworkDescription network = chain(21, true);
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  ASSERT_LT(rest.force, 1e-9);
+  // From the first link alone: the horizontal tension is the same in all, the vertical one less by m g
+  // at each mass; the links that this gives must end at the other nail.
+  const Vec3 first = rest.position[1] - rest.position[0];
+  const Vec3 tension = kStiffness * (first.norm() - kRest) * first.normalized();
+  Vec3 place = Vec3::Zero();
+  for (std::size_t i = 1; i < 21; ++i) {
+    const Vec3 pull = tension + Vec3(0, kMass * kG * static_cast<double>(i - 1), 0);
+    place += (kRest + pull.norm() / kStiffness) * pull.normalized();
+    EXPECT_LT((rest.position[i] - place).norm(), 1e-7) << i;
+  }
+  EXPECT_LT((place - Vec3(2, 0, 0)).norm(), 1e-7);
+  EXPECT_NEAR(rest.position[10].x(), 1.0, 1e-8);  // the middle hangs in the middle
+}
+
+TEST(Settle, LeavesWhatIsAtRestWhereItIs) {
+  NetworkDescription network = chain(5, false);
+  network.gravity = Vec3::Zero();
+
+  const Settled rest = settle(network, 1e-9, 10);
+
+  EXPECT_EQ(rest.steps, 1u);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(rest.position[i], network.mats[i].position);
+}
+
+TEST(Settle, IsTheStartOfAWorldThatStaysThere) {
+  std::mt19937 random(7);
+  const auto between = [&random](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  for (int trial = 0; trial < 30; ++trial) {
+    SCOPED_TRACE(trial);
+    NetworkDescription network;
+    network.dimension = 2 + trial % 2;
+    network.step = 1e-3;
+    network.gravity[network.dimension - 1] = -kG;
+    const auto place = [&] {
+      Vec3 point(between(-0.2, 0.2), between(-0.2, 0.2), 0);
+      if (network.dimension == 3) point.z() = between(-0.2, 0.2);
+      return point;
+    };
+    for (int i = 0; i < 4; ++i) network.mats.push_back({MatKind::kFixed, 0.0, place()});
+    for (std::uint32_t i = 4; i < 12; ++i) {
+      network.mats.push_back({MatKind::kMass, between(0.01, 0.05), place(), place()});
+      for (int l = 0; l < 4; ++l) {
+        const auto other = static_cast<std::uint32_t>(random() % i);
+        network.links.push_back({other, i, between(20, 300), between(0, 0.05), between(0.0, 0.2)});
+      }
+    }
+    network.maxwell_links.push_back({0, 5, 10, 3, 0.4});
+
+    const Settled rest = settle(network, 1e-7, 400'000);
+
+    ASSERT_LT(rest.force, 1e-7);
+    for (std::uint32_t i = 0; i < 12; ++i) {
+      network.mats[i].position = rest.position[i];
+      network.mats[i].velocity = Vec3::Zero();
+    }
+    engine::World world(std::make_shared<const engine::Network>(network));
+    world.step();
+    for (std::uint32_t i = 4; i < 12; ++i) {
+      const Vec3 force = world.link_force(i) + network.mats[i].mass * network.gravity;
+      EXPECT_LT(force.norm(), 1.1e-7);  // of dampers in the first step, and of rounding
+    }
+  }
+}
+
+TEST(Settle, KeepsTheStatesOfTheStart) {
+  NetworkDescription network = chain(2, false);
+  network.links.clear();
+  engine::StateMachine thread;
+  thread.states.resize(2);
+  thread.states[0].stiffness = kStiffness;
+  thread.states[0].last_exit = 1;
+  engine::Instruction elongation;
+  elongation.operation = engine::Operation::kQuantity;
+  elongation.quantity = engine::Quantity::kElongation;
+  engine::Transition tears;
+  tears.when.code = {elongation};  // torn at once
+  tears.target = 1;
+  thread.exits = {tears};
+  network.state_machines = {thread};
+  network.state_links = {{0, 1, 0, kRest}};
+
+  const Settled rest = settle(network, 1e-9, 100'000);
+
+  EXPECT_LT(rest.force, 1e-9);
+  EXPECT_NEAR(rest.position[1].norm(), kRest + kMass * kG / kStiffness, 1e-11);
+}
+
+TEST(Settle, EndsWithWhatFallsForever) {
+  NetworkDescription network = chain(3, false);
+  network.links.pop_back();
+
+  const Settled rest = settle(network, 1e-9, 500);
+
+  EXPECT_TRUE(rest.is_finite);
+  EXPECT_GE(rest.steps, 500u);
+  EXPECT_GE(rest.force, kMass * kG * (1.0 - 1e-12));
+}
+
+}  // namespace
+}  // namespace cordis::plan

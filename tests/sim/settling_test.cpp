@@ -1,0 +1,73 @@
+// tests/sim/settling_test.cpp -- scenes that are at rest when they start.
+#include "sim_node/checks/settling.h"
+
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+std::string chain(const std::string& settle, const std::string& ends = "first_fixed") {
+  return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\n" + settle + R"(
+world: {gravity_m_per_s2: [0, -10]}
+matter:
+  chain: {kind: string, count: 5, from_m: [0, 0], to_m: [0, -0.4], ends: )" +
+         ends + R"(, mass_kg: 0.01, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.01,
+          velocity_m_per_s: [1, 0]}
+)";
+}
+
+scene::Scene settled(const std::string& text, config::Problems& problems) {
+  scene::Scene scene = scene::load_scene_text(text, "t", problems);
+  if (!problems.has_errors()) settle(scene, problems);
+  return scene;
+}
+
+TEST(Settling, MovesTheStartOfTheScene) {
+  config::Problems problems;
+  const scene::Scene scene = settled(chain("settle: {until_n: 1.0e-9}"), problems);
+
+  ASSERT_EQ(problems.text(), "");
+  // the four links carry 4, 3, 2 and 1 weights of 0.1 N
+  EXPECT_NEAR(scene.network.mats[4].position.y(), -0.4 - 0.001 * (4 + 3 + 2 + 1), 1e-9);
+  EXPECT_EQ(scene.network.mats[4].velocity, engine::Vec3(1, 0, 0));
+  EXPECT_DOUBLE_EQ(scene.network.links[0].rest_length, 0.1);
+  ASSERT_TRUE(scene.settled);
+  EXPECT_EQ(scene.settled->mat, 4u);
+  EXPECT_NEAR(scene.settled->way, 0.01, 1e-9);
+  EXPECT_EQ(settled_text(scene).find("in "), 0u);
+  EXPECT_NE(settled_text(scene).find("; chain[4] moved the farthest, 0.01 m"), std::string::npos);
+}
+
+TEST(Settling, IsNothingUnlessAsked) {
+  config::Problems problems;
+  const scene::Scene scene = settled(chain(""), problems);
+
+  EXPECT_EQ(problems.text(), "");
+  EXPECT_DOUBLE_EQ(scene.network.mats[4].position.y(), -0.4);
+  EXPECT_EQ(settled_text(scene), "");
+}
+
+TEST(Settling, RefusesWhatDoesNotComeToRest) {
+  config::Problems problems;
+  settled(chain("settle: {until_n: 1.0e-9, steps: 50}", "free"), problems);
+
+  EXPECT_EQ(problems.text(),
+            "t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]\n"
+            "settle: {until_n: 1.0e-9, steps: 50}\n"
+            "        ^\n"
+            "  hint: hold what falls or slides, or write a larger until_n or steps");
+}
+
+TEST(Settling, ReadsItsKeys) {
+  config::Problems problems;
+  settled(chain("settle: {until_n: 0, steps: 0, until: 3}"), problems);
+
+  EXPECT_NE(problems.text().find("t:4:19: error: 'until_n' in settle must be > 0, got 0"),
+            std::string::npos)
+      << problems.text();
+  EXPECT_NE(problems.text().find("t:4:29: error: 'steps' in settle"), std::string::npos);
+  EXPECT_NE(problems.text().find("t:4:32: error: unknown key 'until'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cordis::sim
