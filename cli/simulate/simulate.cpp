@@ -18,6 +18,7 @@
 #include "cli/table/column_summary.h"
 #include "cli/table/sound_file.h"
 #include "sim_node/checks/settling.h"
+#include "sim_node/checks/start_state.h"
 
 namespace cordis::cli {
 namespace {
@@ -163,6 +164,12 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   refuse_shared_files(options, options.summary_file);
   OfflineSession session(options.file, options.overrides);
   const double duration_s = duration_of(options, session);
+  if (!options.state_file.empty() && options.state_file == options.summary_file) {
+    throw UsageError("--summary and --save-state name the same file");
+  }
+  const double start_s = session.simulation().start_s();
+  std::optional<OutputFile> state;
+  if (!options.state_file.empty()) state.emplace(options.state_file);
   Recording recording(options, session);
   SimulateResult result;
   result.warnings = session.warnings();
@@ -171,7 +178,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   std::function<void()> after_step;
   if (recording.wants_steps()) after_step = [&recording] { recording.take_step(); };
   const auto begun = WallClock::now();
-  while (!session.has_reached(duration_s) && !result.is_stopped) {
+  while (!session.has_reached(start_s + duration_s) && !result.is_stopped) {
     if (!session.play_tick(after_step)) {
       recording.take_events();
       break;
@@ -184,10 +191,14 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   result.drives = drive_trouble_text(session.simulation().troubles());
   result.integration_error = session.integration_error_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
-  result.simulated_s = session.time_s();
+  result.simulated_s = session.time_s() - start_s;
   result.step_count = session.world().step_count();
   result.state_hash = session.world().state_hash();
   recording.finish(result);
+  if (state && result.failure.empty()) {
+    state->write(sim::state_file_text(session.scene(), session.world().snapshot()));
+    state->flush();
+  }
   return result;
 }
 

@@ -16,6 +16,7 @@ struct SimulateOptions : TableOptions {
   std::vector<std::string> overrides;  ///< of a launch file
   double duration_s = 0.0;             ///< 0: `duration_s` of the sim_node
   std::string summary_file;
+  std::string state_file;  ///< for the state at the end
 };
 
 /// What came of it.

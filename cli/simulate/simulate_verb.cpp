@@ -39,8 +39,8 @@ int run(const SimulateOptions& options) {
   for (const std::string* text : {&result.bound, &result.integration_error, &result.drives}) {
     if (!text->empty()) std::fprintf(stderr, "warning: %s\n", text->c_str());
   }
-  const bool is_piped =
-      options.csv_file == "-" || options.events_file == "-" || options.summary_file == "-";
+  const bool is_piped = options.csv_file == "-" || options.events_file == "-" ||
+                        options.summary_file == "-" || options.state_file == "-";
   node::print_text(is_piped ? stderr : stdout, report_of(result));
   if (result.is_stopped) {
     std::fputs("stopped before its time; what was simulated is kept\n", stderr);
@@ -72,6 +72,8 @@ void add_simulate_verb(CommandLine& line) {
                   "Rows of the table: step, tick (a gesture period), 10 (steps), 0.01s [tick]");
   verb.option("--summary", "FILE", options.summary_file,
               "Write what came of it, as JSON; - for stdout");
+  verb.option("--save-state", "FILE", options.state_file,
+              "Write the state at the end, for 'start_state' of a scene");
   verb.examples(
       "The devices of a launch file play with the drivers mock and script; the result is that of\n"
       "`cordis run` in lockstep, bit for bit. Columns are the time, the signals, the position and\n"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/config/count_text.h"
 #include "node/config/device_limits.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/nearest_word.h"
@@ -17,6 +18,69 @@ constexpr const char* kHowToSoften =
 constexpr const char* kHowToHaveIt = "a device that has it, or less in 'needs' of the port";
 constexpr const char* kHowToCalm = "viscosity at the port, or a softer hand";
 
+/// What is wrong with ports. Of the copies of a port, which stand at one place of the file, the first is
+/// named, and how many more there are.
+class PortProblems {
+ public:
+  enum class About { kAbsence, kAxes, kRate, kNeeds, kLoad };
+
+  void error(About about, const config::Place& place, const std::string& text,
+             const std::string& hint = {}) {
+    add({config::Problem::Severity::kError, about, place, text, hint});
+  }
+  void warning(About about, const config::Place& place, const std::string& text,
+               const std::string& hint = {}) {
+    add({config::Problem::Severity::kWarning, about, place, text, hint});
+  }
+
+  void report(config::Problems& problems) const {
+    for (const Found& found : found_) {
+      const std::string more =
+          found.copies == 0
+              ? ""
+              : "; so do " + config::count_text(found.copies, "port") + " more of this line";
+      if (found.severity == config::Problem::Severity::kError) {
+        problems.error(found.place, found.text + more, found.hint);
+      } else {
+        problems.warning(found.place, found.text + more, found.hint);
+      }
+    }
+  }
+
+  /// From here on problems are of another port.
+  void next_port() noexcept { ++port_; }
+
+ private:
+  struct Found {
+    config::Problem::Severity severity = config::Problem::Severity::kError;
+    About about = About::kAbsence;
+    config::Place place;
+    std::string text;
+    std::string hint;
+    std::size_t port = 0;    ///< the first that has it
+    std::size_t latest = 0;  ///< and the last so far
+    std::size_t copies = 0;  ///< that have it too
+  };
+
+  void add(Found found) {
+    for (Found& before : found_) {
+      const bool is_alike = before.severity == found.severity && before.about == found.about &&
+                            before.place.line == found.place.line &&
+                            before.place.column == found.place.column &&
+                            before.place.file == found.place.file && before.port != port_;
+      if (!is_alike) continue;
+      if (before.latest != port_) ++before.copies;
+      before.latest = port_;
+      return;
+    }
+    found.port = found.latest = port_;
+    found_.push_back(std::move(found));
+  }
+
+  std::vector<Found> found_;
+  std::size_t port_ = 0;
+};
+
 /// A device_node of a launch file, and what its device file promises.
 struct LaunchedDevice {
   const config::LaunchNode* node = nullptr;
@@ -26,24 +90,24 @@ struct LaunchedDevice {
 
 /// Warns that no node plays the device of a port.
 void warn_of_absence(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
-                     const scene::Port& port, config::Problems& problems) {
+                     const scene::Port& port, PortProblems& problems) {
   std::vector<std::string> names;
   for (const LaunchedDevice& device : devices) names.push_back(device.plays);
   const std::string near = config::nearest_word(port.device, names);
   problems.warning(
-      port.place,
+      PortProblems::About::kAbsence, port.place,
       "port '" + port.name + "' wants the device '" + port.device + "', and " + launch.file +
           " has no device_node of that name: it stays at rest until one joins the session",
       near.empty() ? "" : "did you mean '" + near + "'?");
 }
 
 void check_axes(const scene::Port& port, const config::DeviceLimits& limits,
-                config::Problems& problems) {
+                PortProblems& problems) {
   const int axis_count = limits.coordinate_count;
   const auto highest = *std::max_element(port.axes.begin(), port.axes.end());
   if (static_cast<int>(highest) < axis_count) return;
   problems.error(
-      port.place,
+      PortProblems::About::kAxes, port.place,
       "port '" + port.name + "' wants axis " + std::to_string(highest) + " of the device '" +
           port.device + "', which has " + std::to_string(axis_count) +
           (axis_count == 1 ? " axis: 0" : " axes: 0 to " + std::to_string(axis_count - 1)));
@@ -51,9 +115,9 @@ void check_axes(const scene::Port& port, const config::DeviceLimits& limits,
 
 /// A device of another rate than the scene counts on plays it in another time.
 void check_rate(const scene::Port& port, const config::DeviceLimits& limits, double gesture_rate_hz,
-                config::Problems& problems) {
+                PortProblems& problems) {
   if (std::abs(limits.rate_hz - gesture_rate_hz) <= 1e-9 * gesture_rate_hz) return;
-  problems.warning(port.place,
+  problems.warning(PortProblems::About::kRate, port.place,
                    "the scene counts on " + config::number_text(gesture_rate_hz) +
                        " gestures per second, and the device '" + port.device + "' gives " +
                        config::number_text(limits.rate_hz),
@@ -62,27 +126,29 @@ void check_rate(const scene::Port& port, const config::DeviceLimits& limits, dou
 }
 
 DeviceAtPort check_demand(const PortDemand& demand, const LaunchedDevice& device,
-                          config::Clock clock, config::Problems& problems) {
+                          config::Clock clock, PortProblems& problems) {
+  using About = PortProblems::About;
   const int delay_periods = delay_periods_of(clock);
   const double rate_hz = device.limits->rate_hz;
   const PortVerdict verdict = verdict_on(demand, *device.limits, delay_periods);
   for (const std::string& lack : verdict.lacks) {
-    problems.error(demand.needs.place, lack, kHowToHaveIt);
+    problems.error(About::kNeeds, demand.needs.place, lack, kHowToHaveIt);
   }
   std::optional<double> needed;
   if (!verdict.refusal.empty() && clock == config::Clock::kRealtime)
     needed = largest_supported_delay(demand, *device.limits, delay_periods);
   if (needed) {
-    problems.warning(demand.place,
+    problems.warning(About::kLoad, demand.place,
                      verdict.refusal + ". " + needed_answer_text(*needed, rate_hz, {}) +
                          ", and the device is given no force before",
                      kHowToSoften);
   } else if (!verdict.refusal.empty()) {
-    problems.error(demand.place, verdict.refusal, kHowToSoften);
+    problems.error(About::kLoad, demand.place, verdict.refusal, kHowToSoften);
   }
   const bool is_mass = demand.role == scene::Role::kMass;
   if (!verdict.uncertainty.empty()) {
-    problems.warning(demand.place, verdict.uncertainty, is_mass ? kHowToSoften : kHowToCalm);
+    problems.warning(About::kLoad, demand.place, verdict.uncertainty,
+                     is_mass ? kHowToSoften : kHowToCalm);
   }
   DeviceAtPort result;
   result.node = device.node->name;
@@ -116,7 +182,8 @@ int delay_periods_of(config::Clock clock) noexcept {
 }
 
 std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,
-                                        config::Problems& problems) {
+                                        config::Problems& all_problems) {
+  PortProblems problems;
   const std::vector<LaunchedDevice> devices = launched_devices(launch);
   for (const scene::Port& port : scene.ports) {
     bool any = false;
@@ -128,6 +195,7 @@ std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scen
       check_rate(port, *device.limits, scene.gesture_rate_hz, problems);
     }
     if (!any) warn_of_absence(launch, devices, port, problems);
+    problems.next_port();
   }
   std::vector<DeviceAtPort> found;
   const std::vector<PortDemand> demands = demands_of(scene);
@@ -137,7 +205,9 @@ std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scen
       found.push_back(check_demand(demands[port], device, launch.clock, problems));
       found.back().port = port;
     }
+    problems.next_port();
   }
+  problems.report(all_problems);
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include "sim_node/checks/rate_check.h"
 #include "sim_node/checks/settling.h"
 #include "sim_node/checks/start_check.h"
+#include "sim_node/checks/start_state.h"
 #include "sim_node/plan/reduction/reduce.h"
 #include "sim_node/scene/sections/scene_reader.h"
 
@@ -22,6 +23,7 @@ PlannedScene plan_scene(scene::Scene scene, config::Problems& problems) {
   planned.scene = plan::reduce(std::move(planned.scene), problems);
   if (!problems.has_errors()) planned.rate = select_rate(planned.scene, problems);
   if (!problems.has_errors()) settle(planned.scene, problems);
+  if (!problems.has_errors()) read_start_state(planned.scene, problems);
   if (!problems.has_errors()) check_start(planned.scene, problems);
   return planned;
 }

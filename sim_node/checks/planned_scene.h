@@ -15,7 +15,8 @@ struct PlannedScene {
   std::optional<plan::RateSelection> rate;  ///< for the `accuracy` of the scene
 };
 
-/// Reads a scene file, takes out what `reduce` names, selects its rate, and settles it. Usable when there is no
+/// Reads a scene file, takes out what `reduce` names, selects its rate, settles it, and reads the state
+/// that it starts from. Usable when there is no
 /// problem. @param referrer  the place that names the file, if any
 PlannedScene plan_scene(const std::string& file, const config::Place& referrer,
                         config::Problems& problems);

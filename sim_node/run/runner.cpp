@@ -67,7 +67,7 @@ bool Runner::advance() noexcept {
 }
 
 double Runner::played_s() const noexcept {
-  return played_before_s_ + simulation().simulated_s();
+  return played_before_s_ + simulation().simulated_s() - simulation().start_s();
 }
 
 }  // namespace cordis::sim

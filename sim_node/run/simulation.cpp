@@ -63,7 +63,15 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       world_(std::make_shared<const engine::Network>(scene_->network)),
       partners_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
-      division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {}
+      division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {
+  if (!scene_->start_state) return;
+  world_.restore(*scene_->start_state);
+  start_s_ = simulated_s();
+  for (std::uint64_t steps = 0; steps < world_.step_count(); ++tick_count_) {
+    steps += static_cast<std::uint64_t>(division_.steps());
+    division_.next();
+  }
+}
 
 bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room) noexcept {
   if (!world_.take_over(before.world_, room)) return false;
@@ -77,6 +85,7 @@ bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room)
   division_ = before.division_;
   steps_in_tick_ = before.steps_in_tick_;
   tick_count_ = before.tick_count_;
+  start_s_ = before.start_s_;
   return true;
 }
 

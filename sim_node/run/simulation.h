@@ -77,6 +77,9 @@ class Simulation {
   bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
   std::uint64_t tick_count() const noexcept { return tick_count_; }
   double simulated_s() const noexcept;
+  double start_s() const noexcept {
+    return start_s_;
+  }  ///< 0, or the time of the state it began from
 
   /// How many others a mass of a set has touched, over all steps.
   const PartnerWatch& partners() const noexcept { return partners_; }
@@ -107,6 +110,7 @@ class Simulation {
   TickDivision division_;
   int steps_in_tick_ = 0;  // done in the present tick
   std::uint64_t tick_count_ = 0;
+  double start_s_ = 0.0;
   bool failed_ = false;
   PassedBound passed_bound_ = PassedBound::kNone;
   bool keeps_devices_ = false;

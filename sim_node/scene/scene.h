@@ -10,6 +10,7 @@
 
 #include "node/config/problem.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/description/world_records.h"
 #include "sim_node/scene/liaisons/link_law.h"
 #include "sim_node/scene/signal.h"
 
@@ -150,6 +151,10 @@ struct Scene {
   std::vector<LayoutPoint> layout;   ///< per MAT in a 1-D scene, else empty
   std::optional<Subspace> subspace;  ///< by a reduction; then there is no layout
   ReductionOptions reduce;
+  std::string
+      start_state_file;  ///< of a state that a run has saved, as its file names it; may be empty
+  config::Place start_state_place;
+  std::shared_ptr<const engine::Snapshot> start_state;  ///< what it holds, once it has been read
   std::optional<Settle> settle;
   std::optional<SettledStart> settled;  ///< once it has been
   std::vector<Reduction> reductions;    ///< that were made

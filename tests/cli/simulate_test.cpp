@@ -39,6 +39,17 @@ signals:
   height: {of: stone, quantity: position, axis: y}
 )";
 
+/// It begins with what a run has saved.
+constexpr const char* kFallingOn = R"(cordis: 1
+name: falling_on
+space: 2
+step: {rate_hz: 4000, integrator: cordis}
+start_state: stone.state
+world: {gravity_m_per_s2: [0, -10]}
+matter:
+  stone: {kind: mass, mass_kg: 2, at_m: [0.5, 0]}
+)";
+
 /// The step is beyond the limit of stability.
 constexpr const char* kDiverging = R"(cordis: 1
 name: diverging
@@ -138,6 +149,19 @@ TEST_F(Simulate, WritesARowForEachStepWithUnitsInTheHeader) {
     EXPECT_EQ(rows[i][2], 0.5);
     EXPECT_EQ(rows[i][3], rows[i][1]);
   }
+}
+
+TEST_F(Simulate, SavesTheStateThatASceneGoesOnFrom) {
+  const std::string scene = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({scene, "--duration", "0.25s", "--save-state", path("stone.state")}), kSuccess)
+      << error_;
+  ASSERT_EQ(run({put("on.yaml", kFallingOn), "--duration", "0.25s"}), kSuccess) << error_;
+  const std::string later = out_;
+  ASSERT_EQ(run({scene, "--duration", "0.5s"}), kSuccess) << error_;
+
+  EXPECT_THAT(later, HasSubstr("simulated 0.25 s"));
+  EXPECT_THAT(later, HasSubstr(out_.substr(out_.find("state hash"))));
+  EXPECT_THAT(later, HasSubstr("after 2000 steps"));
 }
 
 TEST_F(Simulate, TakesRowsByTickByStepsAndByTime) {

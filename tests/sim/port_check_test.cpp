@@ -15,6 +15,7 @@
 #include "node/config/name_hash.h"
 #include "node/config/yaml_reader.h"
 #include "node/time.h"
+#include "sim_node/checks/device_check.h"
 #include "sim_node/devices/refused_devices.h"
 #include "sim_node/scene/sections/scene_reader.h"
 
@@ -67,6 +68,34 @@ TEST(PortCheck, RefusesASceneStifferThanItsPortWithTheNumberItMayHave) {
   EXPECT_NE(refusal.find("as stiff as 1002 N/m"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("supports 1001 N/m"), std::string::npos) << refusal;
   EXPECT_EQ(verdict(stiff, key_limits(), 0).refusal, "") << "3003 N/m without delay";
+}
+
+TEST(PortCheck, SaysOnceWhatIsWrongWithTheCopiesOfAPort) {
+  config::Problems problems;
+  const scene::Scene scene = scene::load_scene_text(
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+parts:
+  key: {ports: {finger: {device: keyboard, axes: [0], role: mass}}}
+matter:
+  bob: {kind: mass, mass_kg: 1, at_m: 0}
+  keys: {part: key, repeat: {count: 16}}
+ports:
+  pedal: {device: pedal, axes: [0], role: mass}
+)",
+      "t", problems);
+  ASSERT_EQ(problems.text(), "");
+  config::Launch launch;
+  launch.file = "l";
+
+  check_devices(launch, scene, problems);
+
+  ASSERT_EQ(problems.all().size(), 2u) << problems.text();
+  EXPECT_EQ(problems.all()[0].message,
+            "port 'keys[0].finger' wants the device 'keyboard', and l has no device_node of that "
+            "name: it stays at rest until one joins the session; so do 15 ports more of this line");
+  EXPECT_EQ(problems.all()[1].message.find("port 'pedal' wants"), 0u);
 }
 
 /// The device file `{axes: 1, ...}` with these keys.

@@ -11,8 +11,12 @@ using engine::MatKind;
 using engine::NetworkDescription;
 
 /// What keeps the MATs from `first` on from following it; empty when nothing does.
-std::string contradiction(const NetworkDescription& network, const DriveSpec& spec,
-                          std::uint32_t first, const std::string& what) {
+std::string contradiction(const Scene& scene, const DriveSpec& spec, std::uint32_t first,
+                          const std::string& what) {
+  const NetworkDescription& network = scene.network;
+  if (!scene.ports.empty() && scene.ports.back().tool >= first) {
+    return what + " has a port, which its device moves";
+  }
   if (spec.kind == DriveSpec::Kind::kPosition) {
     return "'position_m' drives one MAT: " + what + " follows displacement_m or force_n";
   }
@@ -41,7 +45,7 @@ std::string contradiction(const NetworkDescription& network, const DriveSpec& sp
 void drive_part(Assembly& assembly, const DriveSpec& spec, std::uint32_t first,
                 const std::string& what, const config::Place& place) {
   NetworkDescription& network = assembly.scene.network;
-  const std::string fault = contradiction(network, spec, first, what);
+  const std::string fault = contradiction(assembly.scene, spec, first, what);
   if (!fault.empty()) {
     assembly.problems.error(place, fault);
     return;

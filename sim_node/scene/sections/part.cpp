@@ -93,9 +93,11 @@ void Parts::add(const Value::Entry& entry) {
   part.place = entry.key_place;
   config::MappingReader reader(entry.value, "part '" + entry.key + "'", problems_);
   part.parameters = reader.optional_mapping("parameters");
-  part.matter = reader.required_mapping("matter");
+  part.ports = reader.optional_mapping("ports");
+  const bool has_port = part.ports.exists() && !part.ports.entries().empty();
+  part.matter = has_port ? reader.optional_mapping("matter") : reader.required_mapping("matter");
   part.links = reader.optional_sequence("links");
-  if (part.matter.exists() && part.matter.entries().empty())
+  if (!has_port && part.matter.exists() && part.matter.entries().empty())
     reader.error_at("matter", "part '" + entry.key + "' has no matter");
   reader.finish();
   part.sound = named && reader.ok();
@@ -136,7 +138,7 @@ std::optional<PartBody> Parts::body(const Part& part, const Value& overrides,
                     "part '" + part.name + "' has no parameter '" + entry.key + "'",
                     config::did_you_mean(entry.key, substitution.names()));
   }
-  PartBody body{substitution(part.matter), substitution(part.links)};
+  PartBody body{substitution(part.matter), substitution(part.ports), substitution(part.links)};
   value_count_ += substitution.value_count() + part.parameters.entries().size();
   if (problems_.error_count() != errors_before) return std::nullopt;
   return body;

@@ -12,12 +12,13 @@
 
 namespace cordis::scene {
 
-/// Matter with its links, as it was written; `$name` in it stands for a parameter.
+/// Matter, ports and links, as they were written; `$name` in it stands for a parameter.
 struct Part {
   std::string name;
   config::Place place;
   config::Value parameters;  ///< their values where a use gives none
   config::Value matter;
+  config::Value ports;
   config::Value links;
   bool sound = true;  ///< false: it has a problem, which has been reported
 };
@@ -25,6 +26,7 @@ struct Part {
 /// What a use of a part puts into the scene, without parameters.
 struct PartBody {
   config::Value matter;
+  config::Value ports;
   config::Value links;
 };
 
@@ -43,7 +45,7 @@ class Parts {
   /// part itself has one.
   const Part* find(const config::Value& name) const;
 
-  /// The matter and links of a part with values for its parameters. Nothing after a problem.
+  /// The matter, ports and links of a part with values for its parameters. Nothing after a problem.
   /// @param overrides  a mapping of parameters to values; need not exist
   /// @param use        where the part is used
   std::optional<PartBody> body(const Part& part, const config::Value& overrides,

@@ -2,13 +2,16 @@
 #include "sim_node/scene/sections/part_use.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 
+#include "node/config/max_axes.h"
 #include "sim_node/scene/matter/matter.h"
 #include "sim_node/scene/matter/start.h"
 #include "sim_node/scene/sections/driven_part.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
+#include "sim_node/scene/sections/ports.h"
 
 namespace cordis::scene {
 
@@ -103,7 +106,7 @@ bool start_copy(Assembly& assembly, const PartUse& use, std::uint32_t first) {
   return false;
 }
 
-/// Adds the matter and links of a part. @return whether all of it was sound.
+/// Adds the matter, ports and links of a part. @return whether all of it was sound.
 bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
               const Placement& placement) {
   const std::size_t errors_before = assembly.problems.error_count();
@@ -117,6 +120,7 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
     const Names::Scope scope(assembly.names, name);
     assembly.liaisons->pool().enter(assembly.names.full(""));
     sound = read_matter(assembly, use.body.matter);
+    read_ports(assembly, use.body.ports);
     read_links(assembly, use.body.links);
   }
   assembly.liaisons->pool().enter(outer_scope);
@@ -124,6 +128,30 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
   assembly.placement = outer;
   sound = sound && start_copy(assembly, use, first);
   return sound && assembly.problems.error_count() == errors_before;
+}
+
+/// Gives the ports of a copy, those from `first_port` on, the axes after those of the copy before: as many
+/// further as a copy has of the device. @return false where the device has no such axis, which is a problem
+bool shift_axes(Assembly& assembly, std::uint32_t copy, std::size_t first_port,
+                const Value::Entry& entry) {
+  const std::span<Port> ports = std::span(assembly.scene.ports).subspan(first_port);
+  std::map<std::string, std::uint32_t> axis_count;
+  for (const Port& port : ports) {
+    axis_count[port.device] += static_cast<std::uint32_t>(port.axes.size());
+  }
+  for (Port& port : ports) {
+    for (std::uint32_t& axis : port.axes) {
+      axis += copy * axis_count[port.device];
+      if (axis < config::kMaxAxes) continue;
+      assembly.problems.error(
+          entry.key_place,
+          "copy " + std::to_string(copy) + " of " + matter_called(assembly, entry.key) +
+              " takes axis " + std::to_string(axis) + " of the device '" + port.device +
+              "', and a device has axes 0 to " + std::to_string(config::kMaxAxes - 1));
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -140,8 +168,10 @@ bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
   for (std::uint32_t copy = 0; sound && copy < use->copies; ++copy) {
     const std::string name = entry.key + "[" + std::to_string(copy) + "]";
     const std::uint32_t first_of_copy = assembly.mat_count();
+    const std::size_t first_port = assembly.scene.ports.size();
     sound = count_use(assembly, entry.key_place) &&
             add_copy(assembly, *use, name, use->placement * copy_placement);
+    sound = sound && shift_axes(assembly, copy, first_port, entry);
     assembly.names.add({name, Named::kMatter, first_of_copy, assembly.mat_count() - first_of_copy,
                         sound, entry.key_place},
                        assembly.problems);

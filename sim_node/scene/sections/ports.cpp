@@ -3,6 +3,8 @@
 
 #include <map>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "node/config/max_axes.h"
@@ -169,45 +171,34 @@ void couple(GeneratedMatter& matter, const Coupling& coupling, double mass) {
   matter.links.links.push_back({1, 0, coupling.stiffness, coupling.viscosity, 0.0, true});
 }
 
-void check_devices(Assembly& assembly) {
-  std::map<std::uint32_t, const Port*> first_of_device;
-  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
-  for (const Port& port : assembly.scene.ports) {
-    if (port.device.empty()) continue;
-    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
-    if (first == &port && first_of_device.size() == kMaxDevices + 1) {
-      assembly.problems.error(port.place,
-                              "the scene has more than " + std::to_string(kMaxDevices) + " devices",
-                              "a device plays several ports, each with axes of its own");
-    }
-    if (first->device != port.device) {
-      assembly.problems.error(
-          port.place,
-          "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
-          "rename one of them");
-    } else if (first->role != port.role) {
-      assembly.problems.error(port.place, "all ports of a device have one role, and '" +
-                                              port.device + "' has the role " +
-                                              word_of(first->role) + " in port '" + first->name +
-                                              "'");
-    }
-    for (const std::uint32_t axis : port.axes) {
-      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
-      if (is_free) continue;
-      assembly.problems.error(port.place, "axis " + std::to_string(axis) + " of device '" +
-                                              port.device + "' is taken by port '" +
-                                              other->second->name + "'");
-    }
+/// Problems of ports, of those that stand at one place in the file the first alone.
+class PortFaults {
+ public:
+  explicit PortFaults(config::Problems& problems) : problems_(problems) {}
+
+  void add(const config::Place& place, const std::string& message, const std::string& hint = {}) {
+    if (!reported_.emplace(place.file, place.line, place.column).second) return;
+    problems_.error(place, message, hint);
   }
+
+ private:
+  config::Problems& problems_;
+  std::set<std::tuple<std::string, int, int>> reported_;
+};
+
+std::string port_called(const Assembly& assembly, const std::string& name) {
+  const std::string port = "port '" + name + "'";
+  return assembly.open_parts.empty() ? port
+                                     : port + " of part '" + assembly.open_parts.back()->name + "'";
 }
 
 void read_port(Assembly& assembly, const Value::Entry& entry) {
   const int space = assembly.scene.space();
   check_name(entry.key, entry.key_place, assembly.problems);
   const std::size_t errors_before = assembly.problems.error_count();
-  config::MappingReader reader(entry.value, "port '" + entry.key + "'", assembly.problems);
+  config::MappingReader reader(entry.value, port_called(assembly, entry.key), assembly.problems);
   Port port;
-  port.name = entry.key;
+  port.name = assembly.names.full(entry.key);
   port.place = entry.key_place;
   port.device = reader.required_text("device");
   port.device_id = config::name_hash(port.device);
@@ -245,6 +236,8 @@ void read_port(Assembly& assembly, const Value::Entry& entry) {
   }
   reader.finish();
 
+  port.rest = assembly.placement(port.rest);
+  for (Vec3& direction : port.directions) direction = assembly.placement.turn * direction;
   port.tool = assembly.mat_count();
   port.mat = coupling ? port.tool + 1 : port.tool;
   const LinkCounts links_before = assembly.link_counts();
@@ -252,12 +245,12 @@ void read_port(Assembly& assembly, const Value::Entry& entry) {
                      assembly.add(std::move(matter), entry.key_place);
   assembly.names.add({entry.key, Named::kPort, port.tool, 1, sound, entry.key_place},
                      assembly.problems);
-  assembly.scene.matter.push_back({entry.key, port.tool, 1, entry.key_place});
+  assembly.scene.matter.push_back({port.name, port.tool, 1, entry.key_place});
   // What the device holds has a name of its own, whether it is the same MAT or not.
   assembly.names.add({entry.key + ".handle", Named::kPort, port.mat, 1, sound, entry.key_place},
                      assembly.problems);
   if (coupling) {
-    assembly.scene.matter.push_back({entry.key + ".handle", port.mat, 1, entry.key_place});
+    assembly.scene.matter.push_back({port.name + ".handle", port.mat, 1, entry.key_place});
     assembly.name_links(entry.key + ".coupling", links_before, sound, entry.key_place, nullptr);
   }
   if (sound) assembly.scene.ports.push_back(std::move(port));
@@ -267,7 +260,35 @@ void read_port(Assembly& assembly, const Value::Entry& entry) {
 
 void read_ports(Assembly& assembly, const Value& section) {
   for (const Value::Entry& entry : section.entries()) read_port(assembly, entry);
-  check_devices(assembly);
+}
+
+void check_ports(Assembly& assembly) {
+  PortFaults faults(assembly.problems);
+  std::map<std::uint32_t, const Port*> first_of_device;
+  std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
+  for (const Port& port : assembly.scene.ports) {
+    if (port.device.empty()) continue;
+    const Port* first = first_of_device.emplace(port.device_id, &port).first->second;
+    if (first == &port && first_of_device.size() == kMaxDevices + 1) {
+      faults.add(port.place, "the scene has more than " + std::to_string(kMaxDevices) + " devices",
+                 "a device plays several ports, each with axes of its own");
+    }
+    if (first->device != port.device) {
+      faults.add(port.place,
+                 "the devices '" + port.device + "' and '" + first->device + "' have the same hash",
+                 "rename one of them");
+    } else if (first->role != port.role) {
+      faults.add(port.place, "all ports of a device have one role, and '" + port.device +
+                                 "' has the role " + word_of(first->role) + " in port '" +
+                                 first->name + "'");
+    }
+    for (const std::uint32_t axis : port.axes) {
+      const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);
+      if (is_free) continue;
+      faults.add(port.place, "axis " + std::to_string(axis) + " of device '" + port.device +
+                                 "' is taken by port '" + other->second->name + "'");
+    }
+  }
 }
 
 }  // namespace cordis::scene

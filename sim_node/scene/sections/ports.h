@@ -6,7 +6,12 @@
 
 namespace cordis::scene {
 
-/// Adds the ports of a section, with their handles, tools and couplings.
+/// Adds the ports of a section, with their handles, tools and couplings, of the scene or of the part that
+/// is being added.
 void read_ports(Assembly& assembly, const config::Value& section);
+
+/// Finds what the ports of a scene contradict each other in: roles and axes of devices. Copies of a port
+/// have one problem.
+void check_ports(Assembly& assembly);
 
 }  // namespace cordis::scene

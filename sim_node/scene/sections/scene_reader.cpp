@@ -134,6 +134,7 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   assembly.read_liaisons(liaisons, signals);
   read_matter(assembly, matter);
   read_ports(assembly, ports);
+  check_ports(assembly);
   read_links(assembly, links);
   std::vector<Signal> read = read_signals(assembly, signals);
   read_conditions(assembly, read);
@@ -163,6 +164,8 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
       read_step(scene.accuracy ? reader.optional_mapping("step") : reader.required_mapping("step"),
                 scene, problems);
   scene.reduce = read_reduce(reader.optional_value("reduce"), scene.accuracy.has_value(), problems);
+  scene.start_state_file = reader.optional_text("start_state", {});
+  scene.start_state_place = reader.place_of("start_state");
   read_settle(reader.optional_mapping("settle"), scene, problems);
   read_content(reader, scene, problems);
   reader.finish();

@@ -1,0 +1,153 @@
+// tests/sim/start_state_test.cpp -- scenes that start from the state of a run.
+#include "sim_node/checks/start_state.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "sim_node/checks/planned_scene.h"
+#include "sim_node/run/simulation.h"
+#include "tests/sim/loaded_scenes.h"
+
+namespace cordis::sim {
+namespace {
+
+class StartState : public testing::Test {
+ protected:
+  StartState()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("cordis-start-state-" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~StartState() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+
+  /// A bow that sticks and slips, a drive, a Maxwell element and a heap; with keys at the top level.
+  std::string scene(const std::string& name, const std::string& keys,
+                    const std::string& mass = "0.01") const {
+    return write(name, "cordis: 1\nname: \"a 'heap'\"\nspace: 2\nstep: {rate_hz: 44100}\n" + keys +
+                           R"(world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.001}
+liaisons:
+  land: {kind: state_machine, stiffness_n_per_m: 500, viscosity_n_s_per_m: 0.2, pulls: false, range: rest,
+         friction: {static: 0.5, stiffness_n_per_m: 300}}
+  glue: {kind: maxwell, stiffness_n_per_m: 20, viscosity_n_s_per_m: 2}
+  rosin:
+    start: hooked
+    states:
+      hooked: {stiffness_n_per_m: 40, exits: [{to: unhooked, when: abs(elongation_m) > 0.002}]}
+      unhooked: {viscosity_n_s_per_m: 0.01, exits: [{to: hooked, when: age_s > 0.004, rest: here}]}
+matter:
+  floor: {kind: plane, at_m: [0, 0], normal: y}
+  heap: {kind: points, at_m: [[0, 0.03], [0.03, 0.05], [0.01, 0.09]], radius_m: 0.02, mass_kg: )" +
+                           mass + R"(,
+         velocity_m_per_s: [[0.1, 0], [-0.2, 0], [0, -1]]}
+  bow: {kind: fixed, driven: {position_m: ["0.2 + 0.3 * time_s", 0.2]}}
+  string: {kind: mass, mass_kg: 0.02, at_m: [0.2, 0.1]}
+  nail: {kind: fixed, at_m: [0.2, 0.15]}
+links:
+  - {liaison: land, within: heap}
+  - {liaison: land, between_sets: [heap, floor]}
+  - {liaison: rosin, between: [bow, string]}
+  - {liaison: glue, between: [nail, string]}
+)");
+  }
+
+  static std::shared_ptr<const scene::Scene> planned(const std::string& file) {
+    config::Problems problems;
+    PlannedScene planned = plan_scene(file, {}, problems);
+    EXPECT_EQ(problems.text(), "");
+    return std::make_shared<const scene::Scene>(std::move(planned.scene));
+  }
+
+  static void play(Simulation& simulation, int ticks) {
+    EventRoom events(1024);
+    for (int tick = 0; tick < ticks; ++tick) {
+      events.clear();
+      ASSERT_TRUE(simulation.advance(simulation.steps_left_in_tick(), events));
+    }
+  }
+
+  std::string saved_after(const std::string& file, int ticks) const {
+    Simulation simulation(planned(file), 1);
+    play(simulation, ticks);
+    return state_file_text(simulation.scene(), simulation.world().snapshot());
+  }
+
+  static std::string problems_of(const std::string& file) {
+    config::Problems problems;
+    plan_scene(file, {}, problems);
+    return problems.text();
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(StartState, GoesOnWithTheBitsOfHavingRunOn) {
+  const std::string file = scene("whole.yaml", "");
+  Simulation whole(planned(file), 1);
+  for (const int ticks : {0, 1, 7, 150}) {
+    write("run.state", saved_after(file, ticks));
+    Simulation later(planned(scene("later.yaml", "start_state: run.state\n")), 1);
+    EXPECT_EQ(later.tick_count(), static_cast<std::uint64_t>(ticks));
+    EXPECT_EQ(later.start_s(), later.simulated_s());
+
+    play(whole, ticks + 200 - static_cast<int>(whole.tick_count()));
+    play(later, 200);
+
+    EXPECT_EQ(later.world().step_count(), whole.world().step_count());
+    EXPECT_EQ(later.world().state_hash(), whole.world().state_hash()) << ticks;
+    EXPECT_EQ(later.steps_of_tick(), whole.steps_of_tick());
+    whole = Simulation(planned(file), 1);
+  }
+}
+
+TEST_F(StartState, IsTheStateThatWasSaved) {
+  const std::string file = scene("whole.yaml", "");
+  const std::string text = saved_after(file, 20);
+  write("run.state", text);
+
+  const Simulation later(planned(scene("later.yaml", "start_state: run.state\n")), 1);
+
+  EXPECT_EQ(state_file_text(later.scene(), later.world().snapshot()), text);
+}
+
+TEST_F(StartState, OfAnotherSceneIsRefused) {
+  write("run.state", saved_after(scene("whole.yaml", ""), 3));
+
+  const std::string text = problems_of(scene("other.yaml", "start_state: run.state\n", "0.011"));
+
+  EXPECT_NE(
+      text.find("other.yaml:5:14: error: 'run.state' holds a state of another scene, 'a 'heap''"),
+      std::string::npos)
+      << text;
+}
+
+TEST_F(StartState, ThatIsDamagedIsRefused) {
+  const std::string sound = saved_after(scene("whole.yaml", ""), 3);
+  const std::string later = scene("later.yaml", "start_state: run.state\n");
+  const auto changed = [&](const std::string& before, const std::string& after) {
+    std::string text = sound;
+    text.replace(text.find(before), before.size(), after);
+    write("run.state", text);
+    return problems_of(later);
+  };
+
+  EXPECT_NE(changed("  - \"", "  - \"0000000000000000").find("it is damaged"), std::string::npos);
+  EXPECT_NE(changed("  - \"", "  - \"xyz").find("must be 16 hexadecimal digits"),
+            std::string::npos);
+  EXPECT_NE(changed("check: \"", "check: \"0").find("must be 16 hexadecimal digits"),
+            std::string::npos);
+  EXPECT_NE(changed("cordis_state: 1", "cordis_state: 2").find("'cordis_state'"),
+            std::string::npos);
+  EXPECT_NE(changed("values:", "value:").find("missing key 'values'"), std::string::npos);
+  std::filesystem::remove(folder_ / "run.state");
+  EXPECT_NE(problems_of(later).find("later.yaml:5:14: error:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cordis::sim
