@@ -101,7 +101,7 @@ class Scanner {
   bool knows_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
-  bool covers_chunk(const Record& record) const;
+  bool has_chunk_before(std::uint64_t end) const;
   bool is_plausible(std::uint64_t offset) const;
   bool begins_data(std::uint64_t offset) const;
   bool ends_data(std::uint64_t offset) const;
@@ -301,7 +301,8 @@ Scanner::Next Scanner::visit_message(const Record& record) {
 /// A record that stands after the data.
 Scanner::Next Scanner::visit_end(const Record& record) {
   bool is_sound = false;
-  if (record.opcode == Opcode::kDataEnd) is_sound = record.content.size() == kDataEndContent;
+  if (record.opcode == Opcode::kDataEnd)
+    is_sound = record.content.size() == kDataEndContent && !has_chunk_before(bytes_.size());
   if (record.opcode == Opcode::kFooter)
     is_sound = position_ + record.size() + kMagic.size() == bytes_.size();
   if (record.opcode == Opcode::kStatistics) is_sound = parse_statistics(record.content).has_value();
@@ -341,7 +342,8 @@ Scanner::Next Scanner::visit(const Record& record) {
     case Opcode::kStatistics:
       return visit_end(record);
     default:
-      if (covers_chunk(record)) return Next::kDamaged;
+      // Its length is wrong when a chunk begins in it.
+      if (has_chunk_before(position_ + record.size())) return Next::kDamaged;
       if (record.opcode == Opcode::kDamaged) return Next::kGoOn;
       // Records of others are skipped, but not a chunk whose opcode is wrong.
       return record.opcode > Opcode::kDamaged && !is_exact_chunk(record.content) &&
@@ -351,11 +353,10 @@ Scanner::Next Scanner::visit(const Record& record) {
   }
 }
 
-/// True if a chunk of the summary begins inside the record: then its length is wrong.
-bool Scanner::covers_chunk(const Record& record) const {
+/// True if a chunk of the summary begins after `position_` and before `end`.
+bool Scanner::has_chunk_before(std::uint64_t end) const {
   return std::ranges::any_of(stored_.chunks, [&](const ChunkIndex& chunk) {
-    return chunk.offset > position_ && chunk.offset < position_ + record.size() &&
-           begins_data(chunk.offset);
+    return chunk.offset > position_ && chunk.offset < end && begins_data(chunk.offset);
   });
 }
 

@@ -222,6 +222,24 @@ TEST(Recover, KeepsChunksThatARecordOfOthersSeemsToCover) {
   }
 }
 
+TEST(Recover, KeepsChunksAfterAnEndOfTheDataThatIsNone) {
+  const TakeFolder folder;
+  const auto path = folder / "ended.mcap";
+  const Original original(folder, 3);
+  std::vector<char> bytes = original.bytes;
+  const std::uint64_t length = 4;
+  bytes[original.chunks[3].offset] = static_cast<char>(Opcode::kDataEnd);
+  std::memcpy(bytes.data() + original.chunks[3].offset + 1, &length, sizeof length);
+  write_file(path, bytes);
+
+  const Recovery recovery = recover(path);
+
+  const std::uint64_t all = original.take.messages.size();
+  EXPECT_EQ(recovery.statistics.message_count, all - original.messages_of_chunk[3]);
+  expect_part_of(messages_of(Reader(path)), original.take.messages);
+  EXPECT_TRUE(check_take(path).faults.empty());
+}
+
 TEST(Recover, GivesATakeItsNameAndLeavesAWholeOneAlone) {
   const TakeFolder folder;
   std::mt19937 random(7);
