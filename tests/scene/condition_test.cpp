@@ -288,6 +288,25 @@ TEST(Variable, OfAPartIsThatOfItsOwnCopyAndThenThatOfTheScene) {
   }
 }
 
+TEST(Variable, IsAskedForByAPartOfAParallelLiaisonAndByLinksOfMatter) {
+  std::string text =
+      falling(until("latch", "bolt.state == broken") + "  both: {parallel: [brittle, latch]}\n",
+              "  - {liaison: both, between: [\"wall[1]\", \"bob[1]\"], name: b}\n") +
+      "parts:\n"
+      "  chain:\n"
+      "    matter: {row: {kind: string, count: 3, mass_kg: 1, from_m: [3, 0], to_m: [4, 0], ends: "
+      "fixed, liaison: latch}}\n"
+      "    links: [{liaison: brittle, between: [\"row[0]\", \"row[2]\"], name: bolt}]\n";
+  text.insert(text.find("links:\n"), "  c: {part: chain}\n");
+  const Scene scene = sound_scene(2, text);
+  World world = world_of(scene);
+  World again = world_of(scene);
+  const std::optional<std::uint64_t> broken = first_change(scene, world, "bolt", 1000);
+  ASSERT_TRUE(broken.has_value());
+  EXPECT_EQ(first_change(scene, again, "b.latch", 1000), *broken + 1);
+  EXPECT_EQ(again.state_of(group_of(scene, "c.row.links").first), 0u);  // its own bolt holds
+}
+
 TEST(Variable, IsAskedForByPairsOfSets) {
   const Scene scene = sound_scene(
       2,

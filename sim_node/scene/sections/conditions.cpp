@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "node/config/nearest_word.h"
 #include "sim_node/scene/language/quantity.h"
@@ -49,6 +50,14 @@ std::vector<ConditionWord> words_of(Owner owner, int space) {
     }
   }
   return words;
+}
+
+/// The word of these that may be meant, or all of them.
+std::string hint_of(const std::string& word, const std::vector<std::string>& words) {
+  std::string hint = config::did_you_mean(word, words);
+  if (!hint.empty()) return hint;
+  for (const std::string& known : words) hint += (hint.empty() ? "it has " : ", ") + known;
+  return hint;
 }
 
 class ConditionReader {
@@ -106,8 +115,8 @@ class ConditionReader {
   }
 
   Instruction of_something() {
-    is_quiet_ =
-        !reference_->state.empty();  // the word beside it reports what is wrong with the link
+    // of a state, the word beside it reports what is wrong with the link
+    is_quiet_ = !reference_->state.empty();
     const Instruction instruction = read_something();
     is_quiet_ = false;
     return instruction;
@@ -141,15 +150,10 @@ class ConditionReader {
     const auto known = std::ranges::find(words, reference_->word, &ConditionWord::text);
     if (known == words.end()) {
       std::vector<std::string> texts;
-      std::string list;
-      for (const ConditionWord& word : words) {
-        texts.push_back(word.text);
-        list += (list.empty() ? "" : ", ") + word.text;
-      }
-      const std::string hint = config::did_you_mean(reference_->word, texts);
+      for (const ConditionWord& word : words) texts.push_back(word.text);
       fail(std::string(name_of(owner)) + " has no quantity '" + reference_->word +
                "' for a condition",
-           hint.empty() ? "it has " + list : hint);
+           hint_of(reference_->word, texts));
       return false;
     }
     variable.quantity = known->quantity->quantity;
@@ -172,14 +176,9 @@ class ConditionReader {
     const auto named = std::ranges::find(states, reference_->state, &engine::LinkState::name);
     if (named == states.end()) {
       std::vector<std::string> names;
-      std::string list;
-      for (const engine::LinkState& state : states) {
-        names.push_back(state.name);
-        list += (list.empty() ? "" : ", ") + state.name;
-      }
-      const std::string hint = config::did_you_mean(reference_->state, names);
+      for (const engine::LinkState& state : states) names.push_back(state.name);
       fail("'" + reference_->owner + "' has no state '" + reference_->state + "'",
-           hint.empty() ? "it has " + list : hint);
+           hint_of(reference_->state, names));
     }
     const auto number = static_cast<double>(named - states.begin());
     return {Operation::kConstant, engine::Quantity::kDistance, number, 0};
