@@ -181,7 +181,7 @@ void add_check_verb(CommandLine& line) {
       "  cordis check launch_configs/scenes/membrane.yaml --band 40\n"
       "  cordis check launch_configs/plucked_string.yaml launch_configs/bowed_string.yaml --json "
       "-\n"
-      "  cordis check - < launch_configs/scenes/mobile.yaml\n"
+      "  cordis check - < launch_configs/scenes/hanging_chain.yaml\n"
       "  cordis check take.mcap\n");
   verb.action([words] {
     CheckOptions& asked = words->options;

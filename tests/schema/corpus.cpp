@@ -160,8 +160,10 @@ constexpr const char* kSceneOfSpace = R"(cordis: 1
 space: 3
 step: {rate_hz: 10000}
 reduce: [series]
+settle: {until_n: 1.0e-6, steps: 1000}
+start_state: none.state
 parts:
-  rod: {matter: {tip: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0]}}}
+  rod: {ports: {end: {device: rods, axes: [0], role: mass, at_m: [0, 1, 0]}}, matter: {tip: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0]}}}
 matter:
   one: {kind: mass, mass_kg: 0.1, at_m: [0, 0, 0]}
   wall: {kind: fixed, at_m: [0, 0, 1]}

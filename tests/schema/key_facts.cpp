@@ -64,6 +64,7 @@ const std::vector<SameMapping>& same_mappings() {
   static const std::vector<SameMapping> kSame{
       {{"parts", "*", "matter"}, {"matter"}},
       {{"parts", "*", "links"}, {"links"}},
+      {{"parts", "*", "ports"}, {"ports"}},
       {{"matter", "*", "driven", "displacement_m"}, {"matter", "*", "driven", "position_m"}},
       {{"matter", "*", "driven", "force_n"}, {"matter", "*", "driven", "position_m"}},
       {{"matter", "*", "core", "ball"}, {"matter", "*", "ball"}},

@@ -23,6 +23,7 @@ const std::map<KeyPath, std::string>& definitions() {
       {{"matter", "*", "driven"}, "driven"},
       {{"matter", "*", "driven", "position_m"}, "table_of_time"},
       {{"links", "[]"}, "link"},
+      {{"ports", "*"}, "port"},
       {{"liaisons", "*"}, "liaison"},
       {{"liaisons", "*", "elasticity"}, "elasticity"},
       {{"liaisons", "*", "dissipation"}, "dissipation"},
@@ -40,7 +41,7 @@ bool is_name_of_the_file(const std::string& key) {
 
 /// A `$name` may stand for a value of a part.
 bool may_be_parameter(const KeyPath& path) {
-  return !path.empty() && (path[0] == "matter" || path[0] == "links");
+  return !path.empty() && (path[0] == "matter" || path[0] == "links" || path[0] == "ports");
 }
 
 /// True if what a mapping lacks may stand in the liaison that it is laid on.
