@@ -52,6 +52,7 @@ NetworkDescription undamped(NetworkDescription network) {
     network.state_links.push_back({link.mat_a, link.mat_b, constant, 0.0});
   }
   network.maxwell_links.clear();
+  network.variables.clear();  // which the conditions asked for that are gone
   return network;
 }
 

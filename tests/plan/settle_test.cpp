@@ -55,6 +55,25 @@ TEST(Settle, HangsAChainBelowItsNail) {
   }
 }
 
+TEST(Settle, LeavesOutWhatConditionsAskFor) {
+  NetworkDescription network = chain(2, false);
+  network.mats[1].position = Vec3(0, -kRest, 0);
+  network.maxwell_links.push_back({0, 1, 100.0, 1.0, 0.0});
+  network.variables.push_back({engine::VariableKind::kDistance, 0, engine::LinkKind::kMaxwell});
+  engine::StateMachine machine;
+  machine.states.resize(2);
+  machine.states[0].last_exit = 1;
+  machine.exits.emplace_back();
+  machine.exits[0].target = 1;
+  machine.exits[0].when.code = {{engine::Operation::kVariable, {}, 0.0, 0}};
+  network.state_machines.push_back(machine);
+  network.state_links.push_back({0, 1, 0, kRest});
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
+}
+
 TEST(Settle, HangsAChainBetweenTwoNailsAsAnElasticCatenary) {
   const NetworkDescription network = chain(21, true);
 
