@@ -271,11 +271,12 @@ matter:
                  "part 'b' contains itself: b > b", ""},
         BadScene{kHead2,
                  R"(parts:
-  p: {^ports: {}, matter: {m: {kind: fixed, at_m: [0, 0]}}}
+  p: {^signals: {}, matter: {m: {kind: fixed, at_m: [0, 0]}}}
 matter:
   b: {kind: mass, mass_kg: 1, at_m: [0, 0]}
 )",
-                 "unknown key 'ports' in part 'p'", "known keys: parameters, matter, links"},
+                 "unknown key 'signals' in part 'p'",
+                 "known keys: parameters, ports, matter, links"},
         BadScene{kHead2, "parts:\n  p: {matter: ^{}}\nmatter:\n  a: {part: p}\n",
                  "part 'p' has no matter", ""},
         BadScene{kHead2,
