@@ -124,7 +124,11 @@ accuracy: {tolerance: 0.01, band_hz: 100, contact_energy: 0.1, over_s: 1}
 step: {gesture_rate_hz: 1000}
 world: {gravity_m_per_s2: [0, -9.81]}
 parts:
-  wheel: {matter: {hub: {kind: mass, mass_kg: 0.1, at_m: [0, 0]}}}
+  wheel:
+    parameters: {ball: {mass_kg: 0.1, radius_m: 0.01}, ends: free}
+    matter:
+      hub: {kind: mass, at_m: [0, 0], ball: $ball}
+      rim: {kind: string, count: 3, mass_kg: 0.1, from_m: [1, 0], to_m: [2, 0], ends: $ends, stiffness_n_per_m: 10}
 matter:
   one: {kind: mass, mass_kg: 0.1, at_m: [[0, 0], [1, 0]], velocity_m_per_s: [0, 0], drawn_radius_m: 0.01, fixed: true}
   pushed: {kind: mass, displacement_m: [0, 0], mass_kg: 0.1, at_m: [0, 3], driven: {force_n: [sin(time_s), 0]}}

@@ -133,6 +133,7 @@ void FileFacts::walk(const Value& value, const KeyPath& path, const Reading& rea
   if (is_read) add_mapping(value, canonical(path), asked->second);
   for (const Value::Entry& entry : value.entries()) {
     if (is_map_of_names(path) && entry.key == "include") continue;
+    if (entry.key == "parameters") continue;  // names of the file, with values of any kind
     walk(entry.value, below(path, is_read ? entry.key : "*"), reading);
   }
 }

@@ -102,6 +102,10 @@ void add_default(const KeyFacts& facts, Json& schema) {
   if (is_text || Json::accept(word)) schema["default"] = is_text ? Json(word) : Json::parse(word);
 }
 
+Json parameter_of_a_part() {
+  return {{"type", "string"}, {"pattern", kParameterOfAPart}};
+}
+
 /// The schema of a value that is no mapping.
 Json scalar(const KeyFacts& facts, const std::string& key, bool may_be_parameter) {
   Json schema = Json::object();
@@ -111,7 +115,7 @@ Json scalar(const KeyFacts& facts, const std::string& key, bool may_be_parameter
   const bool is_choice = kinds == std::set{KeyKind::kChoice};
   if (is_choice && !is_name_of_the_file(key)) {
     if (may_be_parameter) {
-      schema["anyOf"] = Json::array({{{"enum", facts.choices}}, {{"pattern", kParameterOfAPart}}});
+      schema["anyOf"] = Json::array({{{"enum", facts.choices}}, parameter_of_a_part()});
     } else {
       schema["enum"] = facts.choices;
     }
@@ -175,7 +179,11 @@ Json SchemaBuilder::value(const KeyPath& path, const std::string& key, const Key
   }
   const bool is_plain = !facts.of_any_kind || facts.kinds.contains(KeyKind::kMapping) ||
                         facts.kinds.contains(KeyKind::kSequence);
-  if (is_plain) return has_object ? object_or_reference(canonical(inner)) : array;
+  if (is_plain && !has_object) return array;
+  if (is_plain && !may_be_parameter(path)) return object_or_reference(canonical(inner));
+  if (is_plain) {
+    return {{"anyOf", Json::array({object_or_reference(canonical(inner)), parameter_of_a_part()})}};
+  }
   Json words{{"type", {"string", "number", "boolean"}}};
   Json any = Json::array();
   if (has_object) any.push_back(object_or_reference(canonical(inner)));
