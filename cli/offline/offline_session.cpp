@@ -1,12 +1,14 @@
 // cli/offline/offline_session.cpp
 #include "cli/offline/offline_session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "device_node/gesture_wire.h"
+#include "node/config/count_text.h"
 #include "node/config/file_kind.h"
 #include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
@@ -148,8 +150,17 @@ void OfflineSession::load_scene(const std::string& file) {
   problems.throw_if_any();
   sim::check_stability(scene, /*force=*/false, problems);
   problems.throw_if_any();
-  for (const scene::Port& port : scene.ports) {
-    warnings_.push_back("port '" + port.name + "' rests: give the launch file to have it played");
+  for (auto port = scene.ports.begin(); port != scene.ports.end();) {
+    const auto next = std::find_if(port, scene.ports.end(), [port](const scene::Port& other) {
+      return other.place.line != port->place.line || other.place.file != port->place.file;
+    });
+    const auto copies = static_cast<std::size_t>(next - port - 1);  // those of one line
+    warnings_.push_back(
+        copies == 0 ? "port '" + port->name + "' rests: give the launch file to have it played"
+                    : "port '" + port->name + "' and " + config::count_text(copies, "port") +
+                          " more of its line rest: give the launch file to have "
+                          "them played");
+    port = next;
   }
   warn(problems);
   make(std::move(scene));

@@ -36,7 +36,7 @@ class PortProblems {
   void report(config::Problems& problems) const {
     for (const Found& found : found_) {
       const std::string more =
-          found.copies == 0
+          found.copies == 0 || found.about == About::kRate
               ? ""
               : "; so do " + config::count_text(found.copies, "port") + " more of this line";
       if (found.severity == config::Problem::Severity::kError) {

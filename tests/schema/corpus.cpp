@@ -68,7 +68,7 @@ constexpr const char* kSceneOnALine = R"(cordis: 1
 name: line
 space: 1
 step: {rate_hz: 10000, gesture_rate_hz: 1000, frame_rate_hz: 25, integrator: cordis, freeze: {tolerance_m: 1.0e-6}}
-world: {gravity_m_per_s2: -9.81, viscosity_n_s_per_m: 0.01}
+world: {parameters: {g: 9.81}, gravity_m_per_s2: -g * cos(time_s), viscosity_n_s_per_m: 0.01, flow_m_per_s: 0.1}
 reduce: {parallel: true}
 parts:
   pair:

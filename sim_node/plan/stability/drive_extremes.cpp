@@ -59,6 +59,12 @@ double largest_value(const NetworkDescription& network, const TimeFunction& func
   return largest;
 }
 
+/// How much larger a force is than its function: the length of a row, which a rotation keeps.
+double factor_of(const engine::Drive& drive) noexcept {
+  const std::array<double, 9>& m = drive.turn;
+  return std::sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+}
+
 }  // namespace
 
 double largest_drive_speed(const NetworkDescription& network) {
@@ -76,7 +82,7 @@ double largest_drive_speed(const NetworkDescription& network) {
 double sum_of_drive_forces(const NetworkDescription& network) {
   std::vector<double> count(network.time_functions.size(), 0.0);
   for (const engine::Drive& drive : network.drives) {
-    if (drive.is_force) count[drive.function] += 1.0;
+    if (drive.is_force) count[drive.function] += factor_of(drive);
   }
   double sum = 0.0;
   for (std::size_t f = 0; f < count.size(); ++f) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "node/config/nearest_word.h"
-#include "sim_node/scene/language/quantity.h"
 
 namespace cordis::scene {
 

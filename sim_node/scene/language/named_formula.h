@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim_node/scene/language/formula.h"
+#include "sim_node/scene/language/quantity.h"
 
 namespace cordis::scene {
 
@@ -14,6 +15,9 @@ struct FormulaName {
   const char* word;
   engine::Quantity place;
 };
+
+/// What a formula of time may ask for: the time since step 0.
+inline constexpr std::array<FormulaName, 1> kNamesOfTime{{{kTimeWord, engine::Quantity::kAge}}};
 
 /// A vector, a formula for each axis. An empty one is 0.
 using AxisFormulas = std::array<engine::Program, 3>;

@@ -24,7 +24,6 @@ using engine::TimeFunction;
 using engine::Vec3;
 
 constexpr double kSamePlace = 1e-9;  // [m]
-constexpr std::array<FormulaName, 1> kNamesOfTime{{{kTimeWord, engine::Quantity::kAge}}};
 
 struct DriveKey {
   const char* key;

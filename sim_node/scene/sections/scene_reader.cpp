@@ -9,6 +9,7 @@
 #include "node/config/yaml_reader.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/sections/conditions.h"
+#include "sim_node/scene/sections/fields.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
 #include "sim_node/scene/sections/ports.h"
@@ -101,15 +102,6 @@ config::Place read_step(const Value& section, Scene& scene, config::Problems& pr
   return place;
 }
 
-void read_world(const Value& section, Scene& scene, config::Problems& problems) {
-  config::MappingReader reader(section, "world", problems);
-  scene.network.gravity =
-      optional_point(reader, "gravity_m_per_s2", engine::Vec3::Zero(), scene.space());
-  scene.network.medium_viscosity =
-      reader.optional_number("viscosity_n_s_per_m", 0.0, Range::not_negative());
-  reader.finish();
-}
-
 bool has_massless(const Scene& scene) {
   const auto is_massless = [](const engine::Mat& mat) {
     return mat.kind == engine::MatKind::kMass && mat.mass == 0.0;
@@ -129,12 +121,13 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   if (scene.space() == 0) return;  // nothing sure can be said about lengths
 
   Assembly assembly(scene, problems);
-  read_world(world, scene, problems);
+  const WorldFields fields = read_world(world, scene, problems);
   assembly.parts.read_section(parts, scene.file);
   assembly.read_liaisons(liaisons, signals);
   read_matter(assembly, matter);
   read_ports(assembly, ports);
   check_ports(assembly);
+  add_fields(fields, scene, problems);
   read_links(assembly, links);
   std::vector<Signal> read = read_signals(assembly, signals);
   read_conditions(assembly, read);

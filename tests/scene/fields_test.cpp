@@ -1,0 +1,123 @@
+// tests/scene/fields_test.cpp -- gravity that changes in time, and a medium that flows.
+#include <cmath>
+#include <memory>
+
+#include "sim_node/engine/world.h"
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+using engine::Vec3;
+using engine::World;
+
+World world_of(const Scene& scene) {
+  return World(std::make_shared<const engine::Network>(scene.network));
+}
+
+constexpr const char* kFree = R"(matter:
+  a: {kind: mass, mass_kg: 0.5, at_m: 0}
+  b: {kind: mass, mass_kg: 2, at_m: 3}
+)";
+
+TEST(Fields, AShakenBoxFollowsTheExactSolutionOfItsRecurrence) {
+  const Scene scene = sound_scene(
+      1, std::string(
+             "world: {parameters: {depth: 5}, gravity_m_per_s2: \"depth * sin(40 * time_s)\"}\n") +
+             kFree);
+  World world = world_of(scene);
+  // x(n+1) - 2 x(n) + x(n-1) = a dt^2 sin(n w), from rest and without force at 0: A sin(n w) + B n
+  const double dt = 1e-3;
+  const double w = 40 * dt;
+  const double a = -5 * dt * dt / (2.0 - 2.0 * std::cos(w));
+  const double b = -a * std::sin(w);
+
+  for (int n = 1; n <= 3000; ++n) {
+    world.step();
+    const double x = a * std::sin(n * w) + b * n;
+    ASSERT_NEAR(world.position(0).x(), x, 1e-9) << n;  // rounding adds up as n^2 eps x
+    ASSERT_NEAR(world.position(1).x(), 3.0 + x, 1e-9) << n;
+  }
+  const engine::Energy energy = world.energy();
+  EXPECT_LT(std::abs(energy.residual()), 1e-12 * energy.largest);
+}
+
+TEST(Fields, AConstantFormulaIsGravity) {
+  const Scene constant = sound_scene(1, std::string("world: {gravity_m_per_s2: -9.81}\n") + kFree);
+  const Scene formula =
+      sound_scene(1, std::string("world: {gravity_m_per_s2: \"-9.81 + 0 * time_s\"}\n") + kFree);
+  World falling = world_of(constant);
+  World pushed = world_of(formula);
+  for (int n = 0; n < 1000; ++n) {
+    falling.step();
+    pushed.step();
+  }
+  EXPECT_NEAR(pushed.position(0).x(), falling.position(0).x(), 1e-11);
+  EXPECT_NEAR(pushed.energy().kinetic, falling.energy().kinetic, 1e-9);
+  const engine::Energy energy = pushed.energy();  // the work of what pushes is that of gravity
+  EXPECT_LT(std::abs(energy.residual()), 1e-12 * energy.largest);
+}
+
+TEST(Fields, WhatFallsInAFlowHasItsTerminalVelocity) {
+  const Scene scene = sound_scene(2, R"(
+world: {gravity_m_per_s2: [0, -10], viscosity_n_s_per_m: 0.8, flow_m_per_s: [3, 0.25]}
+matter:
+  light: {kind: mass, mass_kg: 0.02, at_m: [0, 0]}
+  heavy: {kind: mass, mass_kg: 0.08, at_m: [1, 0]}
+)");
+  World world = world_of(scene);
+  for (int n = 0; n < 6000; ++n) world.step();
+
+  // Z (u - v) + m g = 0, which is a fixed point of the scheme as well; (1 - dt Z / m)^6000 is below 1e-26
+  EXPECT_LT((world.velocity(0) - Vec3(3, 0.25 - 0.02 * 10 / 0.8, 0)).norm(), 1e-10);
+  EXPECT_LT((world.velocity(1) - Vec3(3, 0.25 - 0.08 * 10 / 0.8, 0)).norm(), 1e-10);
+  const engine::Energy energy = world.energy();
+  EXPECT_LT(std::abs(energy.residual()), 1e-11 * energy.largest);
+}
+
+TEST(Fields, LeaveToolsWithoutWeightAndWhatIsFixedAlone) {
+  const Scene scene = sound_scene(1, R"(
+world: {gravity_m_per_s2: "-9 - time_s"}
+matter:
+  nail: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 1, at_m: 1}
+ports:
+  key: {device: k, axes: [0], role: liaison}
+)");
+  ASSERT_EQ(scene.network.drives.size(), 1u);
+  EXPECT_EQ(scene.network.drives[0].mat, 1u);
+  EXPECT_EQ(value_at(scene.network, scene.network.drives[0], 2.0), Vec3(-11, 0, 0));
+  EXPECT_EQ(scene.network.gravity, Vec3(0, 0, 0));
+}
+
+class BadFields : public testing::TestWithParam<BadScene> {};
+
+TEST_P(BadFields, HaveOneProblemAtTheirPlace) {
+  expect_only_problem(GetParam());
+}
+
+constexpr const char* kBob = "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n";
+const std::string kNoMedium = std::string("world: {flow_m_per_s: ^[1, 0]}\n") + kBob;
+const std::string kNoName = std::string("world: {gravity_m_per_s2: [0, \"^tim_s\"]}\n") + kBob;
+const std::string kNoNumber =
+    std::string("world: {gravity_m_per_s2: ^[0, \"1 / time_s\"]}\n") + kBob;
+const std::string kPushed =
+    "world: {gravity_m_per_s2: ^[0, \"time_s\"]}\n"
+    "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 0], driven: {force_n: [1, 0]}}}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Scene, BadFields,
+    testing::Values(
+        BadScene{kHead2, kNoMedium.c_str(),
+                 "a medium that flows needs a viscosity_n_s_per_m > 0 in world", ""},
+        BadScene{kHead2, kNoName.c_str(), "'gravity_m_per_s2' in world cannot ask for 'tim_s'",
+                 "did you mean 'time_s'?"},
+        BadScene{kHead2, kNoNumber.c_str(),
+                 "'gravity_m_per_s2' in world is no finite number within 1e6 at 0 s", ""},
+        BadScene{kHead2, kPushed.c_str(),
+                 "b is pushed by 'force_n', and cannot be pushed by gravity that changes "
+                 "or by a flow as well",
+                 ""}));
+
+}  // namespace
+}  // namespace cordis::scene
