@@ -301,12 +301,11 @@ Scanner::Next Scanner::visit_message(const Record& record) {
 /// A record that stands after the data.
 Scanner::Next Scanner::visit_end(const Record& record) {
   bool is_sound = false;
-  if (record.opcode == Opcode::kDataEnd)
-    is_sound = record.content.size() == kDataEndContent && !has_chunk_before(bytes_.size());
+  if (record.opcode == Opcode::kDataEnd) is_sound = record.content.size() == kDataEndContent;
   if (record.opcode == Opcode::kFooter)
     is_sound = position_ + record.size() + kMagic.size() == bytes_.size();
   if (record.opcode == Opcode::kStatistics) is_sound = parse_statistics(record.content).has_value();
-  if (!is_sound) return Next::kDamaged;
+  if (!is_sound || has_chunk_before(bytes_.size())) return Next::kDamaged;
   if (record.opcode == Opcode::kDataEnd) {
     scan_.has_data_end = true;
     std::memcpy(&scan_.stored_data_crc, record.content.data(), kDataEndContent);

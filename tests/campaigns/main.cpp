@@ -14,6 +14,8 @@
 
 namespace {
 
+constexpr int kMaxRealtime = 6;  // sessions with launcher, observer, three nodes and their restarts
+
 int usage() {
   std::fputs(
       R"(usage: stall_campaign lockstep|realtime [--sessions N] [--parallel N] [--longest SECONDS]
@@ -55,5 +57,10 @@ int main(int argc, char** argv) {
     }
   }
   if (kind != "lockstep" && kind != "realtime") return usage();
+  if (kind == "realtime" && options.parallel > kMaxRealtime) {
+    std::fprintf(stderr, "stall_campaign: the domain of the sessions has ports for %d at once\n",
+                 kMaxRealtime);
+    return 2;
+  }
   return play_all(options, kind == "lockstep" ? play_lockstep : play_realtime) == 0 ? 0 : 1;
 }
