@@ -60,6 +60,7 @@ void MessageCursor::open_next_chunk() {
   const auto chunk =
       record && record->opcode == Opcode::kChunk ? parse_chunk(record->content) : std::nullopt;
   if (!chunk) return fail("there is none");
+  if (record->size() != index.length) return fail("it has another length");
   if (chunk->uncompressed_size > kMaxOpenBytes - open_bytes_)
     return fail("too many chunks overlap in time");
   auto open = std::make_unique<Open>();

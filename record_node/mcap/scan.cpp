@@ -76,6 +76,7 @@ class Scanner {
   explicit Scanner(std::span<const std::byte> bytes) : bytes_(bytes) {
     const std::string why = read_stored_summary(bytes, stored_);
     if (!why.empty() && why != kIncompleteSummary) stored_ = {};
+    find_known_chunks();
   }
 
   Scan run();
@@ -101,7 +102,10 @@ class Scanner {
   bool knows_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
-  bool has_chunk_before(std::uint64_t end) const;
+  void find_known_chunks();
+  bool is_known_chunk(std::uint64_t offset) const;
+  bool is_before_known_chunk(std::uint64_t offset) const;
+  bool covers_known_chunk(std::uint64_t offset, const Record& record) const;
   bool is_plausible(std::uint64_t offset) const;
   bool begins_data(std::uint64_t offset) const;
   bool ends_data(std::uint64_t offset) const;
@@ -111,7 +115,8 @@ class Scanner {
   }
 
   std::span<const std::byte> bytes_;
-  Summary stored_;  // of the file, where it is sound
+  Summary stored_;                           // of the file, where it is sound
+  std::vector<std::uint64_t> known_chunks_;  // of stored_, their places in order
   std::uint64_t position_ = 0;
   Scan scan_;
   ChunkContents contents_;
@@ -206,7 +211,7 @@ std::string Scanner::read_chunk(const ChunkView& chunk, Statistics& statistics) 
 
 Scanner::Next Scanner::visit_chunk(const Record& record) {
   end_chunk();
-  if (!is_exact_chunk(record.content)) return Next::kDamaged;
+  if (!is_exact_chunk(record.content) && !is_known_chunk(position_)) return Next::kDamaged;
   const auto chunk = parse_chunk(record.content);
   Statistics statistics;
   is_chunk_open_ = true;
@@ -305,7 +310,7 @@ Scanner::Next Scanner::visit_end(const Record& record) {
   if (record.opcode == Opcode::kFooter)
     is_sound = position_ + record.size() + kMagic.size() == bytes_.size();
   if (record.opcode == Opcode::kStatistics) is_sound = parse_statistics(record.content).has_value();
-  if (!is_sound || has_chunk_before(bytes_.size())) return Next::kDamaged;
+  if (!is_sound || is_before_known_chunk(position_)) return Next::kDamaged;
   if (record.opcode == Opcode::kDataEnd) {
     scan_.has_data_end = true;
     std::memcpy(&scan_.stored_data_crc, record.content.data(), kDataEndContent);
@@ -341,8 +346,6 @@ Scanner::Next Scanner::visit(const Record& record) {
     case Opcode::kStatistics:
       return visit_end(record);
     default:
-      // Its length is wrong when a chunk begins in it.
-      if (has_chunk_before(position_ + record.size())) return Next::kDamaged;
       if (record.opcode == Opcode::kDamaged) return Next::kGoOn;
       // Records of others are skipped, but not a chunk whose opcode is wrong.
       return record.opcode > Opcode::kDamaged && !is_exact_chunk(record.content) &&
@@ -352,11 +355,31 @@ Scanner::Next Scanner::visit(const Record& record) {
   }
 }
 
-/// True if a chunk of the summary begins after `position_` and before `end`.
-bool Scanner::has_chunk_before(std::uint64_t end) const {
-  return std::ranges::any_of(stored_.chunks, [&](const ChunkIndex& chunk) {
-    return chunk.offset > position_ && chunk.offset < end && begins_data(chunk.offset);
-  });
+/// The chunks that the summary of the file knows and that are where it says.
+void Scanner::find_known_chunks() {
+  for (const ChunkIndex& index : stored_.chunks) {
+    const auto record = first_record(bytes_.subspan(index.offset));
+    if (record && record->opcode == Opcode::kChunk && record->size() == index.length &&
+        parse_chunk(record->content))
+      known_chunks_.push_back(index.offset);
+  }
+  std::ranges::sort(known_chunks_);
+}
+
+bool Scanner::is_known_chunk(std::uint64_t offset) const {
+  return std::ranges::binary_search(known_chunks_, offset);
+}
+
+/// True if a known chunk begins after this place.
+bool Scanner::is_before_known_chunk(std::uint64_t offset) const {
+  return !known_chunks_.empty() && known_chunks_.back() > offset;
+}
+
+/// True if a known chunk begins inside the record, or so soon after it that no record has room between.
+bool Scanner::covers_known_chunk(std::uint64_t offset, const Record& record) const {
+  const std::uint64_t end = offset + record.size();
+  const auto next = std::ranges::upper_bound(known_chunks_, offset);
+  return next != known_chunks_.end() && *next != end && *next < end + kRecordHead;
 }
 
 bool Scanner::is_plausible(std::uint64_t offset) const {
@@ -366,12 +389,13 @@ bool Scanner::is_plausible(std::uint64_t offset) const {
   return record->opcode <= Opcode::kDataEnd || record->opcode == Opcode::kDamaged;
 }
 
-/// True if a chunk or an attachment begins here, as its lengths show.
+/// True if a chunk or an attachment begins here, as the summary says or its lengths show.
 bool Scanner::begins_data(std::uint64_t offset) const {
+  if (is_known_chunk(offset)) return true;
   const auto opcode = static_cast<Opcode>(bytes_[offset]);
   if (opcode != Opcode::kChunk && opcode != Opcode::kAttachment) return false;
   const auto record = first_record(bytes_.subspan(offset));
-  if (!record) return false;
+  if (!record || covers_known_chunk(offset, *record)) return false;
   return opcode == Opcode::kChunk ? is_exact_chunk(record->content)
                                   : is_exact_attachment(record->content);
 }
@@ -380,14 +404,15 @@ bool Scanner::begins_data(std::uint64_t offset) const {
 bool Scanner::ends_data(std::uint64_t offset) const {
   if (static_cast<Opcode>(bytes_[offset]) != Opcode::kDataEnd) return false;
   const auto record = first_record(bytes_.subspan(offset));
-  return record && record->content.size() == kDataEndContent &&
+  return record && record->content.size() == kDataEndContent && !is_before_known_chunk(offset) &&
          is_plausible(offset + record->size());
 }
 
 /// Where reading can go on after a damaged record; the size of the file when nowhere.
 std::uint64_t Scanner::next_record(std::uint64_t offset) const {
   const auto record = first_record(bytes_.subspan(offset));
-  const bool has_end = record && is_plausible(offset + record->size());
+  const bool has_end =
+      record && is_plausible(offset + record->size()) && !covers_known_chunk(offset, *record);
   const std::uint64_t end = has_end ? offset + record->size() : bytes_.size();
   // The length of a record that may hold data is right when its parts fill it.
   if (has_end && (is_exact_chunk(record->content) || is_exact_attachment(record->content)))
@@ -403,7 +428,8 @@ Scan Scanner::run() {
   position_ = kMagic.size();
   while (position_ < bytes_.size()) {
     const auto record = first_record(bytes_.subspan(position_));
-    const Next next = record ? visit(*record) : Next::kDamaged;
+    const bool is_possible = record && !covers_known_chunk(position_, *record);
+    const Next next = is_possible ? visit(*record) : Next::kDamaged;
     if (next == Next::kEnd) break;
     if (next == Next::kDamaged) {
       const std::uint64_t end = next_record(position_);

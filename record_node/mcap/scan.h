@@ -46,7 +46,8 @@ struct Scan {
 bool is_mcap(std::span<const std::byte> bytes) noexcept;
 
 /// Reads every record and unpacks every chunk. Chunks whose CRC does not fit are damages. A channel
-/// or schema whose record is damaged is taken from the summary of the file, where that is sound.
+/// or schema whose record is damaged is taken from the summary of the file, where that is sound; so is
+/// the place of a chunk.
 /// Precondition: is_mcap().
 Scan scan(std::span<const std::byte> bytes);
 

@@ -75,6 +75,19 @@ bool is_complete(const Summary& summary) {
          statistics.metadata_count == summary.metadata.size();
 }
 
+/// True if the chunks stand one behind the other, each in its place, before `end`.
+bool have_room(std::vector<ChunkIndex> chunks, std::uint64_t end) {
+  std::ranges::sort(chunks, {}, &ChunkIndex::offset);
+  std::uint64_t place = kMagic.size();  // where the record before ends
+  for (const ChunkIndex& chunk : chunks) {
+    const bool follows =
+        chunk.offset == place || (chunk.offset > place && chunk.offset - place >= kRecordHead);
+    if (!follows || chunk.offset > end || chunk.length > end - chunk.offset) return false;
+    place = chunk.offset + chunk.length;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string read_stored_summary(std::span<const std::byte> file, Summary& summary) {
@@ -102,7 +115,8 @@ std::string read_stored_summary(std::span<const std::byte> file, Summary& summar
     is_readable = is_readable && read_record(each, summary);
     return is_readable;
   });
-  if (!is_whole || !is_readable) return "its summary is damaged";
+  if (!is_whole || !is_readable || !have_room(summary.chunks, footer->summary_start))
+    return "its summary is damaged";
   return is_complete(summary) ? "" : kIncompleteSummary;
 }
 
