@@ -13,14 +13,13 @@ namespace {
 using config::MappingReader;
 using config::Value;
 using engine::MatKind;
-using engine::Quantity;
 using engine::Vec3;
 
-constexpr std::array<FormulaName, 5> kNamesOfStart{{{"index", Quantity::kAge},
-                                                    {"count", Quantity::kDistance},
-                                                    {"x_m", Quantity::kSpeedX},
-                                                    {"y_m", Quantity::kSpeedY},
-                                                    {"z_m", Quantity::kSpeedZ}}};
+constexpr std::array<FormulaName, 5> kNamesOfStart{{{"index", engine::Quantity::kAge},
+                                                    {"count", engine::Quantity::kDistance},
+                                                    {"x_m", engine::Quantity::kSpeedX},
+                                                    {"y_m", engine::Quantity::kSpeedY},
+                                                    {"z_m", engine::Quantity::kSpeedZ}}};
 
 /// What a formula of a start may ask for.
 std::span<const FormulaName> names_in(int space) {
@@ -31,14 +30,14 @@ std::span<const FormulaName> names_in(int space) {
 Vec3 value_at(const AxisFormulas& formulas, const Vec3& place, std::size_t index,
               std::size_t count) {
   engine::LinkQuantities quantities{};
-  const auto put = [&quantities](Quantity quantity, double value) {
+  const auto put = [&quantities](engine::Quantity quantity, double value) {
     quantities[static_cast<std::size_t>(quantity)] = value;
   };
-  put(Quantity::kAge, static_cast<double>(index));
-  put(Quantity::kDistance, static_cast<double>(count));
-  put(Quantity::kSpeedX, place.x());
-  put(Quantity::kSpeedY, place.y());
-  put(Quantity::kSpeedZ, place.z());
+  put(engine::Quantity::kAge, static_cast<double>(index));
+  put(engine::Quantity::kDistance, static_cast<double>(count));
+  put(engine::Quantity::kSpeedX, place.x());
+  put(engine::Quantity::kSpeedY, place.y());
+  put(engine::Quantity::kSpeedZ, place.z());
   Vec3 value = Vec3::Zero();
   for (std::size_t axis = 0; axis < formulas.size(); ++axis) {
     if (formulas[axis].empty()) continue;
