@@ -33,8 +33,10 @@ NetworkDescription undamped(NetworkDescription network) {
   network.freeze_tolerance = 0.0;
   network.kept_awake.clear();
   network.medium_viscosity = 0.0;
-  network.drives.clear();
-  network.time_functions.clear();
+  std::erase_if(network.drives, [](const engine::Drive& drive) { return !drive.is_force; });
+  for (engine::TimeFunction& function : network.time_functions) {
+    function = {{}, {0.0}, {value_at(function, 0.0)}, false};  // a table of one value stays at it
+  }
   for (engine::Mat& mat : network.mats) mat.velocity = Vec3::Zero();
   for (engine::Link& link : network.links) link.viscosity = 0.0;
   for (engine::StateMachine& state_machine : network.state_machines) {
@@ -79,9 +81,6 @@ class Rest {
       }
     }
     world_.emplace(std::make_shared<const engine::Network>(network_));
-    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
-      if (!driven_[i].isZero(0.0)) world_->set_external_force(i, driven_[i]);
-    }
     step();
   }
 

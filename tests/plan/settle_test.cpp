@@ -94,6 +94,25 @@ TEST(Settle, HangsAChainBetweenTwoNailsAsAnElasticCatenary) {
   EXPECT_NEAR(rest.position[10].x(), 1.0, 1e-8);  // the middle hangs in the middle
 }
 
+TEST(Settle, HangsAChainByADrivenForceAsByGravity) {
+  const NetworkDescription heavy = chain(21, true);
+  NetworkDescription pushed = heavy;
+  pushed.gravity = Vec3::Zero();
+  engine::TimeFunction weight;  // of all masses at the start, and another one later
+  weight.time = {0.0, 1.0};
+  weight.value = {Vec3(0, -kMass * kG, 0), Vec3(5, 5, 0)};
+  pushed.time_functions = {weight};
+  for (std::uint32_t i = 1; i < 20; ++i) pushed.drives.push_back({i, 0, true});
+
+  const Settled expected = settle(heavy, 1e-9, 200'000);
+  const Settled rest = settle(pushed, 1e-9, 200'000);
+
+  ASSERT_LT(rest.force, 1e-9);
+  for (std::size_t i = 0; i < 21; ++i) {
+    EXPECT_LT((rest.position[i] - expected.position[i]).norm(), 1e-7);
+  }
+}
+
 TEST(Settle, LeavesWhatIsAtRestWhereItIs) {
   NetworkDescription network = chain(5, false);
   network.gravity = Vec3::Zero();
