@@ -385,6 +385,22 @@ void PrintTo(const BadCondition& bad, std::ostream* stream) {
 
 class BadConditions : public testing::TestWithParam<BadCondition> {};
 
+TEST(Variable, ThatThousandsOfCopiesMisspellIsOneProblemAtOnce) {
+  // Each copy used to look through all names of the scene for what may be meant, which took minutes.
+  const std::string text =
+      scene_head(2) + "liaisons:\n" + until("latch", "bold.state == held or bold.age_s > 1") +
+      "parts:\n"
+      "  door:\n"
+      "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
+      "    links: [{liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: bolt}]\n"
+      "matter:\n"
+      "  doors: {part: door, repeat: {count: 3000, translate_m: [1, 0]}}\n";
+  config::Problems problems;
+  load_scene_text(text, "t", problems);
+  ASSERT_EQ(problems.error_count(), 2u);
+  EXPECT_EQ(problems.all().front().message, "no matter, port or links are named 'bold'");
+}
+
 TEST_P(BadConditions, AreReportedOnceAtTheirPlace) {
   const std::string text =
       "liaisons:\n"

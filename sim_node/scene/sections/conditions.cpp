@@ -81,7 +81,8 @@ class ConditionReader {
   /// One problem for each place, however many links a liaison has.
   void fail(const std::string& message, const std::string& hint) {
     const config::Place& place = reference_->place;
-    if (is_quiet_ || !reported_.insert({place.file, place.line, place.column}).second) return;
+    const bool is_first = failed_.insert({place.file, place.line, place.column}).second;
+    if (is_quiet_ || !is_first) return;
     assembly_.problems.error(place, message, hint);
   }
 
@@ -115,6 +116,8 @@ class ConditionReader {
   }
 
   Instruction of_something() {
+    const config::Place& place = reference_->place;
+    if (failed_.contains({place.file, place.line, place.column})) return {};  // in another copy
     // of a state, the word beside it reports what is wrong with the link
     is_quiet_ = !reference_->state.empty();
     const Instruction instruction = read_something();
@@ -192,8 +195,10 @@ class ConditionReader {
       bool is_there = false;
       {
         const Names::Scope inside(assembly_.names, scope_.substr(0, scope_.size() - 1));
-        picked = select_from(in_part);
-        is_there = assembly_.names.find(first_name()) != nullptr;
+        const std::string first = first_name();
+        is_there =
+            assembly_.names.find(first) != nullptr || assembly_.names.is_before_links(first);
+        if (is_there) picked = select_from(in_part);
       }
       if (picked) return picked;
       if (is_there) return refused(in_part);
@@ -234,7 +239,7 @@ class ConditionReader {
 
   Assembly& assembly_;
   const std::vector<Signal>& signals_;
-  std::set<std::tuple<std::string, int, int>> reported_;
+  std::set<std::tuple<std::string, int, int>> failed_;  // places, reported but for quiet ones
   bool is_quiet_ = false;
   const VariableReference* reference_ = nullptr;  // that is read
   std::string scope_;                             // of its link
