@@ -4,7 +4,7 @@
 // A session of 16 keys at 1 kHz and a net of 10,000 balls at 25 frames per second, in real time,
 // without a recorder and with one in turns; with the folder of another build's executables also with
 // the recorder of that build. Prints processor time of the recorder, by its threads, and of a tick of
-// sim_node, resident memory and messages that are missing; then how much faster than real time the
+// sim_node, of all its threads and of its loop, resident memory and messages that are missing; then how much faster than real time the
 // take is computed again, and the session by `cordis simulate`; at the end the processor time of a
 // sim_node that plays a string of 200 masses at 44.1 kHz, with its sound and a device.
 #include <chrono>
@@ -89,8 +89,19 @@ double sum_of(const std::map<std::string, double>& threads) {
   return sum;
 }
 
+/// That of the thread that runs main(): the loop of sim_node.
+double loop_of(const std::map<std::string, double>& threads, pid_t process) {
+  std::string number(1, ' ');
+  number += std::to_string(process);
+  for (const auto& [name, seconds] : threads) {
+    if (name.ends_with(number)) return seconds;
+  }
+  return 0.0;
+}
+
 struct Measured {
-  double sim_tick_s = 0.0;  // processor time
+  double sim_tick_s = 0.0;  // processor time of all its threads
+  double sim_loop_s = 0.0;  // of its loop alone
   double recorder = 0.0;    // share of a core
   double recorder_bytes = 0.0;
   std::uint64_t messages = 0;
@@ -124,14 +135,17 @@ std::optional<Measured> run(std::chrono::seconds duration, const std::string& re
     std::fprintf(stderr, "%s%s", sim->output().c_str(), device->output().c_str());
     return std::nullopt;
   }
-  const double sim_s = sum_of(processor_s(sim->id()));
+  const std::map<std::string, double> sim_s = processor_s(sim->id());
   std::map<std::string, double> record_s;
   if (record != nullptr) record_s = processor_s(record->id());
   const auto start = std::chrono::steady_clock::now();
   std::this_thread::sleep_for(duration);
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   Measured measured;
-  measured.sim_tick_s = (sum_of(processor_s(sim->id())) - sim_s) / (took.count() * 1000);
+  const std::map<std::string, double> sim_end_s = processor_s(sim->id());
+  const double ticks = took.count() * 1000;
+  measured.sim_tick_s = (sum_of(sim_end_s) - sum_of(sim_s)) / ticks;
+  measured.sim_loop_s = (loop_of(sim_end_s, sim->id()) - loop_of(sim_s, sim->id())) / ticks;
   if (record != nullptr) {
     for (const auto& [name, seconds] : processor_s(record->id())) {
       const double share = (seconds - record_s[name]) / took.count();
@@ -161,7 +175,8 @@ std::optional<Measured> run(std::chrono::seconds duration, const std::string& re
 }
 
 void print(const char* name, const Measured& run) {
-  std::printf("  %-14s sim_node %6.1f us a tick", name, run.sim_tick_s * 1e6);
+  std::printf("  %-14s sim_node %6.1f us a tick, its loop %6.1f us", name, run.sim_tick_s * 1e6,
+              run.sim_loop_s * 1e6);
   if (run.recorder > 0.0) {
     std::printf(
         ", recorder %.2f %% of a core, %.0f MB, %llu messages, %llu missing:", 100.0 * run.recorder,
@@ -255,7 +270,8 @@ int main(int argc, char** argv) {
     const auto recorded = run(duration, ours, turn == 0 ? kept : "");
     if (!recorded) return 1;
     print("recorder", *recorded);
-    std::printf("  tick with a recorder: %.3f times\n", recorded->sim_tick_s / alone->sim_tick_s);
+    std::printf("  tick with a recorder: %.3f times, of the loop alone %.3f times\n",
+                recorded->sim_tick_s / alone->sim_tick_s, recorded->sim_loop_s / alone->sim_loop_s);
   }
   const double resim_s = seconds_of({ours + "/cordis", "resim", kept + "/take.mcap"});
   const std::string length = std::to_string(duration.count()) + "s";
