@@ -2,9 +2,12 @@
 #include "cli/simulate/simulate.h"
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -158,15 +161,32 @@ class Recording {
   std::uint64_t lost_events_ = 0;
 };
 
+/// @throws UsageError where the file for the state is the one that is simulated, or another output
+void refuse_shared_state_file(const SimulateOptions& options) {
+  if (options.state_file.empty()) return;
+  std::error_code failure;
+  if (std::filesystem::equivalent(options.state_file, options.file, failure)) {
+    throw UsageError("--save-state would overwrite " + options.file);
+  }
+  const std::pair<const char*, const std::string&> others[] = {{"--csv", options.csv_file},
+                                                               {"--npz", options.npz_file},
+                                                               {"--wav", options.wav_file},
+                                                               {"--events", options.events_file},
+                                                               {"--summary", options.summary_file}};
+  for (const auto& [option, file] : others) {
+    if (file == options.state_file) {
+      throw UsageError(std::string(option) + " and --save-state name the same file");
+    }
+  }
+}
+
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const std::function<bool()>& stops) {
   refuse_shared_files(options, options.summary_file);
+  refuse_shared_state_file(options);
   OfflineSession session(options.file, options.overrides);
   const double duration_s = duration_of(options, session);
-  if (!options.state_file.empty() && options.state_file == options.summary_file) {
-    throw UsageError("--summary and --save-state name the same file");
-  }
   const double start_s = session.simulation().start_s();
   std::optional<OutputFile> state;
   if (!options.state_file.empty()) state.emplace(options.state_file);

@@ -95,12 +95,19 @@ bool fits(const scene::Scene& scene, const engine::Snapshot& snapshot,
   return true;
 }
 
+/// The hash of step and values.
+std::uint64_t hash_of_all(const engine::Snapshot& snapshot) {
+  std::vector<double> all = snapshot.state;
+  all.push_back(std::bit_cast<double>(snapshot.step));
+  return engine::hash_of(all);
+}
+
 }  // namespace
 
 std::string state_file_text(const scene::Scene& scene, const engine::Snapshot& snapshot) {
   std::string text = "cordis_state: 1\nscene: " + quoted(scene.name) + "\nnetwork: \"" +
                      hex_text(snapshot.network) + "\"\nstep: " + std::to_string(snapshot.step) +
-                     "\ncheck: \"" + hex_text(engine::hash_of(snapshot.state)) + "\"\nvalues:";
+                     "\ncheck: \"" + hex_text(hash_of_all(snapshot)) + "\"\nvalues:";
   for (std::size_t i = 0; i < snapshot.state.size(); ++i) {
     if (i % kValuesOfLine == 0) text += i == 0 ? "\n  - \"" : "\"\n  - \"";
     text += hex_text(std::bit_cast<std::uint64_t>(snapshot.state[i]));
@@ -125,8 +132,9 @@ void read_start_state(scene::Scene& scene, config::Problems& problems) {
   read_values(reader, snapshot.state);
   reader.finish();
   if (problems.error_count() != errors_before) return;
-  if (check != engine::hash_of(snapshot.state)) {
-    reader.error_at("check", reader.name_of("check") + " does not fit the values: it is damaged");
+  if (check != hash_of_all(snapshot)) {
+    reader.error_at("check",
+                    reader.name_of("check") + " does not fit step and values: it is damaged");
     return;
   }
   if (!fits(scene, snapshot, scene_name, problems)) return;

@@ -15,6 +15,8 @@ using engine::MatKind;
 using engine::NetworkDescription;
 using engine::Vec3;
 
+constexpr int kMaxHalvings = 10;  // of a step that diverges: that of `implicit` may be long
+
 /// A liaison that pulls its ends together with a force that does not change.
 engine::StateMachine pulling_with(double force) {
   engine::Instruction constant;
@@ -131,9 +133,8 @@ class Rest {
   bool is_finite_ = true;
 };
 
-}  // namespace
-
-Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+/// At the step of the network, from its start.
+Settled try_to_settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
   Rest rest(network);
   for (;;) {
     rest.hold();
@@ -146,6 +147,18 @@ Settled settle(const NetworkDescription& network, double until, std::uint64_t ma
       if (!rest.step()) return rest.pose();
     }
   }
+}
+
+}  // namespace
+
+Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+  Settled pose = try_to_settle(network, until, max_steps);
+  NetworkDescription finer = network;
+  for (int halving = 0; halving < kMaxHalvings && !pose.is_finite; ++halving) {
+    finer.step *= 0.5;
+    pose = try_to_settle(finer, until, max_steps);
+  }
+  return pose;
 }
 
 }  // namespace cordis::plan

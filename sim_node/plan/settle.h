@@ -17,8 +17,8 @@ struct Settled {
   bool is_finite = true;               ///< false: it diverged; the rest says nothing then
 };
 
-/// Lets a network come to rest from its start: by `cordis` at its step, without dampers, medium and
-/// velocities, and held still whenever its kinetic energy falls (kinetic damping). Each liaison stays in
+/// Lets a network come to rest from its start: by `cordis` at its step, or a shorter one where
+/// that diverges, without dampers, medium and velocities, and held still whenever its kinetic energy falls (kinetic damping). Each liaison stays in
 /// its state of the start, without friction; a Maxwell element keeps its start force. Ports and what is
 /// driven stay, and driven forces are those of the start. The same bits on every vector width.
 /// @param until  it ends once no mass is pulled by more [N]

@@ -299,6 +299,9 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
       {{scene, "--duration", "1s", "--wav", path("a.wav")}, "add 'sound: true'"},
       {{scene, "--duration", "1s", "--npz", "-"}, "wants a file, not stdout"},
       {{scene, "--duration", "1s", "--csv", path("x"), "--npz", path("x")}, "name the same file"},
+      {{scene, "--duration", "1s", "--csv", path("x"), "--save-state", path("x")},
+       "--csv and --save-state name the same file"},
+      {{scene, "--duration", "1s", "--save-state", scene}, "--save-state would overwrite"},
   };
   for (const auto& [words, sentence] : cases) {
     EXPECT_EQ(run(words), kBadInput) << sentence;

@@ -188,6 +188,21 @@ TEST(Settle, KeepsTheStatesOfTheStart) {
   EXPECT_NEAR(rest.position[1].norm(), kRest + kMass * kG / kStiffness, 1e-11);
 }
 
+TEST(Settle, TakesAShorterStepWhereThatOfImplicitIsTooLong) {
+  NetworkDescription network = chain(21, true);
+  const Settled expected = settle(network, 1e-9, 200'000);
+  network.integrator = engine::IntegratorKind::kImplicit;
+  network.step *= 20.0;
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  ASSERT_TRUE(rest.is_finite);
+  ASSERT_LT(rest.force, 1e-9);
+  for (std::size_t i = 0; i < 21; ++i) {
+    EXPECT_LT((rest.position[i] - expected.position[i]).norm(), 1e-7) << i;
+  }
+}
+
 TEST(Settle, EndsWithWhatFallsForever) {
   NetworkDescription network = chain(3, false);
   network.links.pop_back();

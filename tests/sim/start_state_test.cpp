@@ -144,6 +144,9 @@ TEST_F(StartState, ThatIsDamagedIsRefused) {
             std::string::npos);
   EXPECT_NE(changed("cordis_state: 1", "cordis_state: 2").find("'cordis_state'"),
             std::string::npos);
+  // a step of which only the number is damaged, one that would be counted up to for years among them
+  EXPECT_NE(changed("step: ", "step: 1").find("it is damaged"), std::string::npos);
+  EXPECT_NE(changed("step: ", "step: 90071992547").find("it is damaged"), std::string::npos);
   EXPECT_NE(changed("values:", "value:").find("missing key 'values'"), std::string::npos);
   std::filesystem::remove(folder_ / "run.state");
   EXPECT_NE(problems_of(later).find("later.yaml:5:14: error:"), std::string::npos);

@@ -196,8 +196,7 @@ class ConditionReader {
       {
         const Names::Scope inside(assembly_.names, scope_.substr(0, scope_.size() - 1));
         const std::string first = first_name();
-        is_there =
-            assembly_.names.find(first) != nullptr || assembly_.names.is_before_links(first);
+        is_there = assembly_.names.find(first) != nullptr || assembly_.names.is_before_links(first);
         if (is_there) picked = select_from(in_part);
       }
       if (picked) return picked;
