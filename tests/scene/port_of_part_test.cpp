@@ -105,6 +105,14 @@ INSTANTIATE_TEST_SUITE_P(
             "copy 16 of matter 'keys' takes axis 16 of the device 'd', and a device has axes 0 to "
             "15",
             ""},
+        BadScene{
+            kHead2,
+            "parts: {k: {ports: {f: {device: d, axes: [0, 1], role: mass, at_m: [0, 0]}}}}\n"
+            "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"
+            "  ^keys: {part: k, repeat: {count: 20, translate_m: [1, 0]}}\n",
+            "copy 8 of matter 'keys' takes axis 16 of the device 'd', and a device has axes 0 to "
+            "15",
+            ""},
         BadScene{kHead2,
                  "parts: {k: {ports: {^f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}\n"
                  "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"

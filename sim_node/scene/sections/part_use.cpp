@@ -139,19 +139,20 @@ bool shift_axes(Assembly& assembly, std::uint32_t copy, std::size_t first_port,
   for (const Port& port : ports) {
     axis_count[port.device] += static_cast<std::uint32_t>(port.axes.size());
   }
+  bool is_there = true;  // all of them are shifted, for none takes an axis of another copy
   for (Port& port : ports) {
     for (std::uint32_t& axis : port.axes) {
       axis += copy * axis_count[port.device];
-      if (axis < config::kMaxAxes) continue;
+      if (axis < config::kMaxAxes || !is_there) continue;
+      is_there = false;
       assembly.problems.error(
           entry.key_place,
           "copy " + std::to_string(copy) + " of " + matter_called(assembly, entry.key) +
               " takes axis " + std::to_string(axis) + " of the device '" + port.device +
               "', and a device has axes 0 to " + std::to_string(config::kMaxAxes - 1));
-      return false;
     }
   }
-  return true;
+  return is_there;
 }
 
 }  // namespace
