@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -33,8 +34,12 @@ std::string report_of(const SimulateResult& result) {
 }
 
 int run(const SimulateOptions& options) {
-  StopSignals signals;
-  const SimulateResult result = simulate(options, [&signals] { return signals.take(); });
+  std::optional<StopSignals>
+      signals;  // once it plays: a scene that loads or settles is ended at once
+  const SimulateResult result = simulate(options, [&signals] {
+    if (!signals) signals.emplace();
+    return signals->take();
+  });
   for (const std::string& warning : result.warnings) node::print_text(stderr, warning + "\n");
   for (const std::string* text : {&result.bound, &result.integration_error, &result.drives}) {
     if (!text->empty()) std::fprintf(stderr, "warning: %s\n", text->c_str());

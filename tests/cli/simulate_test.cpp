@@ -2,7 +2,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,6 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "cli/exit_code.h"
@@ -307,6 +310,29 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
     EXPECT_EQ(run(words), kBadInput) << sentence;
     EXPECT_THAT(error_, HasSubstr(sentence));
   }
+}
+
+TEST_F(Simulate, CtrlCEndsASceneThatSettlesForLong) {
+  const std::string scene =
+      put("sheet.yaml",
+          "cordis: 1\nspace: 2\nstep: {rate_hz: 4000}\nworld: {gravity_m_per_s2: [0, -9.81]}\n"
+          "matter:\n  s: {kind: string, count: 30, from_m: [0, 0], to_m: [1, 0], ends: fixed, "
+          "mass_kg: 0.001, stiffness_n_per_m: 3000}\n"
+          "settle: {until_n: 1.0e-300, steps: 5000000}\n");
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGINT, SIG_DFL);
+    _exit(run({scene, "--duration", "1s"}));
+  }
+  ASSERT_GT(child, 0);
+  clockid_t clock{};
+  timespec used{};
+  ASSERT_EQ(clock_getcpuclockid(child, &clock), 0);
+  while (used.tv_sec == 0 && used.tv_nsec < 300'000'000) ASSERT_EQ(clock_gettime(clock, &used), 0);
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << status;
 }
 
 TEST_F(Simulate, AFullDiskEndsItWithASentence) {
