@@ -89,7 +89,7 @@ double sum_of(const std::map<std::string, double>& threads) {
   return sum;
 }
 
-/// That of the thread that runs main(): the loop of sim_node.
+/// Processor time [s] of the thread that runs main(), the loop of sim_node.
 double loop_of(const std::map<std::string, double>& threads, pid_t process) {
   std::string number(1, ' ');
   number += std::to_string(process);

@@ -152,5 +152,11 @@ TEST_F(StartState, ThatIsDamagedIsRefused) {
   EXPECT_NE(problems_of(later).find("later.yaml:5:14: error:"), std::string::npos);
 }
 
+TEST_F(StartState, WithoutAFileIsRefused) {
+  EXPECT_NE(problems_of(scene("whole.yaml", "start_state: \"\"\n"))
+                .find("whole.yaml:5:14: error: 'start_state' in scene must name a file"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace cordis::sim

@@ -159,6 +159,10 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
   scene.reduce = read_reduce(reader.optional_value("reduce"), scene.accuracy.has_value(), problems);
   scene.start_state_file = reader.optional_text("start_state", {});
   scene.start_state_place = reader.place_of("start_state");
+  if (reader.has("start_state") && scene.start_state_file.empty() &&
+      problems.error_count() == errors_before) {
+    reader.error_at("start_state", reader.name_of("start_state") + " must name a file");
+  }
   read_settle(reader.optional_mapping("settle"), scene, problems);
   read_content(reader, scene, problems);
   reader.finish();
