@@ -8,6 +8,7 @@
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "tests/engine/surfaces.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -147,7 +148,7 @@ TEST(FrictionBound, LetsNothingCreepOrChatterThatIsHeld) {
     for (int n = 0; n < settle; ++n) step(n);
     const Vec3 rest = world.position(0);
     double farthest = 0.0;
-    for (int n = settle; n < settle + 1'000'000; ++n) {
+    for (int n = settle; n < settle + rounds(1'000'000); ++n) {
       step(n);
       Vec3 away = world.position(0) - rest;
       away.y() = 0.0;
