@@ -463,7 +463,7 @@ bool Scan::has_loss() const noexcept {
 }
 
 bool is_mcap(std::span<const std::byte> bytes) noexcept {
-  return matching_magic(bytes) + 1 >= kMagic.size();
+  return bytes.size() >= kMagic.size() && matching_magic(bytes) + 1 >= kMagic.size();
 }
 
 Scan scan(std::span<const std::byte> bytes) {

@@ -267,7 +267,7 @@ TEST(Recover, RefusesAFileThatIsBeingRecorded) {
 
 TEST(Recover, RefusesWhatIsNoTake) {
   const TakeFolder folder;
-  for (const std::string text : {"", "x", "not a take at all, but a text"}) {
+  for (const std::string text : {"", "x", "not a take at all, but a text", "\x89MCAP0\r"}) {
     write_file(folder / "text", {text.begin(), text.end()});
     EXPECT_THROW(recover(folder / "text"), FileError);
     EXPECT_EQ(contents_of(folder / "text").size(), text.size());
