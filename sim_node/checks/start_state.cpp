@@ -12,6 +12,7 @@
 #include "node/config/yaml_reader.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/world.h"
+#include "sim_node/run/tick_division.h"
 
 namespace cordis::sim {
 namespace {
@@ -90,6 +91,12 @@ bool fits(const scene::Scene& scene, const engine::Snapshot& snapshot,
   } catch (const std::invalid_argument& refusal) {
     problems.error(scene.start_state_place,
                    "'" + scene.start_state_file + "' is damaged: " + refusal.what());
+    return false;
+  }
+  if (!TickDivision(scene.step_rate_hz, scene.gesture_rate_hz).go_behind(snapshot.step)) {
+    problems.error(scene.start_state_place,
+                   "'" + scene.start_state_file + "' ends within a gesture period of this scene",
+                   "write the gesture_rate_hz of the scene it was saved from");
     return false;
   }
   return true;

@@ -57,6 +57,10 @@ PreparedRequest RequestMaker::prepare(const Command& command, const Check& check
     case msg::VERB_RESET:
       prepared = restart(scene_);
       prepared.done = "'" + scene_->name + "' restarts";
+      if (prepared.request.scene->simulation.misses_start_state()) {
+        prepared.done +=
+            " at 0 s, as '" + scene_->start_state_file + "' was saved with other parameters";
+      }
       return prepared;
     case msg::VERB_SET:
       return set(command.values, check);
@@ -111,6 +115,7 @@ PreparedRequest RequestMaker::set(const std::vector<NewValue>& values, const Che
     if (problems.has_errors()) throw std::invalid_argument(problems.all().front().message);
     scene::set_step(*scene, scene_->step_rate_hz, scene_->network.integrator);
     keep_settled(*scene_, *scene);
+    scene->start_state = scene_->start_state;  // read once it was reduced
   }
   if (check) check(*scene, problems);
   if (problems.has_errors()) {

@@ -127,6 +127,10 @@ void Resimulation::begin(const msg::SceneInputs& batch) {
   maker_ = std::make_unique<RequestMaker>(shared, epoch_);
   runner_ = std::make_unique<Runner>(std::make_unique<LoadedScene>(shared, epoch_, 1),
                                      clock_ == msg::PACE_LOCKSTEP);
+  if (now().misses_start_state()) {
+    throw std::invalid_argument("'" + shared->start_state_file +
+                                "' fits no other integrator than that of the take");
+  }
   if (!change_.values.empty()) {
     Command command;
     command.verb = msg::VERB_SET;

@@ -8,6 +8,7 @@
 
 #include "node/config/count_text.h"
 #include "sim_node/checks/stability_check.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
@@ -64,13 +65,16 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       partners_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
       division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {
-  if (!scene_->start_state) return;
+  if (!scene_->start_state || misses_start_state()) return;
+  const auto ticks = division_.go_behind(scene_->start_state->step);
+  CORDIS_ASSERT(ticks.has_value());
   world_.restore(*scene_->start_state);
   start_s_ = simulated_s();
-  for (std::uint64_t steps = 0; steps < world_.step_count(); ++tick_count_) {
-    steps += static_cast<std::uint64_t>(division_.steps());
-    division_.next();
-  }
+  tick_count_ = ticks.value_or(0);
+}
+
+bool Simulation::misses_start_state() const noexcept {
+  return scene_->start_state && scene_->start_state->network != world_.network().fingerprint();
 }
 
 bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room) noexcept {

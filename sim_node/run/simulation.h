@@ -37,6 +37,7 @@ enum class PassedBound : std::uint8_t { kNone, kPartners, kNumber, kEnergy };
 /// [Luc90 V.1 Force feedback gestual transducers] Nothing here knows of DDS, threads or clocks.
 class Simulation {
  public:
+  /// Precondition: a saved state of the scene ends with a tick, as read_start_state() sees to.
   /// @param epoch  of this sim_node
   Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch);
 
@@ -77,9 +78,10 @@ class Simulation {
   bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
   std::uint64_t tick_count() const noexcept { return tick_count_; }
   double simulated_s() const noexcept;
-  double start_s() const noexcept {
-    return start_s_;
-  }  ///< 0, or the time of the state it began from
+  /// 0, or the time of the state it began from.
+  double start_s() const noexcept { return start_s_; }
+  /// True if the saved state of the scene does not fit its parameters: it begins at 0 s then.
+  bool misses_start_state() const noexcept;
 
   /// How many others a mass of a set has touched, over all steps.
   const PartnerWatch& partners() const noexcept { return partners_; }

@@ -37,4 +37,21 @@ TickDivision::TickDivision(double step_rate_hz, double gesture_rate_hz) {
   denominator_ = denominator;
 }
 
+std::optional<std::uint64_t> TickDivision::go_behind(std::uint64_t step) noexcept {
+  // step * denominator_ = ticks * numerator_ + rest, bit by bit: the product may have 83 bits
+  std::uint64_t ticks = 0;
+  std::int64_t rest = 0;
+  for (int bit = 63; bit >= 0; --bit) {
+    ticks *= 2;
+    rest *= 2;
+    if ((step >> static_cast<unsigned>(bit) & 1U) != 0) rest += denominator_;
+    ticks += static_cast<std::uint64_t>(rest / numerator_);
+    rest %= numerator_;
+  }
+  const std::int64_t passed = rest == 0 ? 0 : numerator_ - rest;
+  if (passed >= denominator_) return std::nullopt;
+  passed_ = passed;
+  return rest == 0 ? ticks : ticks + 1;
+}
+
 }  // namespace cordis::sim

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 namespace cordis::sim {
 
@@ -32,6 +33,9 @@ class TickDivision {
   }
   /// Goes on to the next tick.
   void next() noexcept { passed_ = (passed_ + numerator_) % denominator_; }
+  /// Goes to the tick that begins behind a step.
+  /// @return how many ticks are over then; nothing, and nothing has changed, where no tick ends there
+  std::optional<std::uint64_t> go_behind(std::uint64_t step) noexcept;
   /// True if all ticks have as many steps.
   bool is_even() const noexcept { return denominator_ == 1; }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "sim_node/checks/planned_scene.h"
+#include "sim_node/run/request_maker.h"
 #include "sim_node/run/simulation.h"
 #include "tests/sim/loaded_scenes.h"
 
@@ -29,8 +30,9 @@ class StartState : public testing::Test {
 
   /// A bow that sticks and slips, a drive, a Maxwell element and a heap; with keys at the top level.
   std::string scene(const std::string& name, const std::string& keys,
-                    const std::string& mass = "0.01") const {
-    return write(name, "cordis: 1\nname: \"a 'heap'\"\nspace: 2\nstep: {rate_hz: 44100}\n" + keys +
+                    const std::string& mass = "0.01", const std::string& step = "") const {
+    return write(name, "cordis: 1\nname: \"a 'heap'\"\nspace: 2\nstep: {rate_hz: 44100" + step +
+                           "}\n" + keys +
                            R"(world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.001}
 liaisons:
   land: {kind: state_machine, stiffness_n_per_m: 500, viscosity_n_s_per_m: 0.2, pulls: false, range: rest,
@@ -76,6 +78,34 @@ links:
     Simulation simulation(planned(file), 1);
     play(simulation, ticks);
     return state_file_text(simulation.scene(), simulation.world().snapshot());
+  }
+
+  /// Two parallel springs, merged where `keys` say so.
+  std::string springs(const std::string& name, const std::string& keys) const {
+    return write(name, "cordis: 1\nname: springs\nspace: 1\nstep: {rate_hz: 4000}\n" + keys + R"(
+liaisons:
+  spring: {kind: spring, stiffness_n_per_m: 100}
+  rubber: {kind: spring, stiffness_n_per_m: 7}
+matter: {wall: {kind: fixed, at_m: 0}, bob: {kind: mass, mass_kg: 0.1, at_m: 0.01}}
+links:
+  - {liaison: spring, between: [wall, bob], rest_m: 0}
+  - {liaison: rubber, between: [wall, bob], rest_m: 0}
+)");
+  }
+
+  static Simulation& now(PreparedRequest& prepared) { return prepared.request.scene->simulation; }
+
+  static PreparedRequest set(const RequestMaker& maker, double stiffness) {
+    Command command;
+    command.verb = msg::VERB_SET;
+    command.values = {{"spring", "stiffness_n_per_m", stiffness}};
+    return maker.prepare(command, {});
+  }
+
+  static PreparedRequest reset(const RequestMaker& maker) {
+    Command command;
+    command.verb = msg::VERB_RESET;
+    return maker.prepare(command, {});
   }
 
   static std::string problems_of(const std::string& file) {
@@ -150,6 +180,59 @@ TEST_F(StartState, ThatIsDamagedIsRefused) {
   EXPECT_NE(changed("values:", "value:").find("missing key 'values'"), std::string::npos);
   std::filesystem::remove(folder_ / "run.state");
   EXPECT_NE(problems_of(later).find("later.yaml:5:14: error:"), std::string::npos);
+}
+
+TEST_F(StartState, OfATickIsNoneOfAnotherGestureRate) {
+  write("run.state", saved_after(scene("whole.yaml", ""), 3));
+  const auto of_rate = [&](const std::string& rate_hz) {
+    return problems_of(
+        scene("later.yaml", "start_state: run.state\n", "0.01", ", gesture_rate_hz: " + rate_hz));
+  };
+
+  EXPECT_EQ(of_rate("1000"), "");
+  EXPECT_EQ(of_rate("44100"), "");  // each step is the end of a period
+  EXPECT_NE(of_rate("900").find("later.yaml:5:14: error: 'run.state' ends within a gesture period"),
+            std::string::npos)
+      << of_rate("900");
+}
+
+TEST_F(StartState, OfAnyStepIsReadAtOnce) {
+  auto described = std::make_shared<scene::Scene>(*planned(scene("whole.yaml", "")));
+  engine::Snapshot snapshot = Simulation(described, 1).world().snapshot();
+  snapshot.step = 441ULL * 20'000'000'000'000ULL;  // 2^53 is a little more
+  write("run.state", state_file_text(*described, snapshot));
+
+  const Simulation later(planned(scene("later.yaml", "start_state: run.state\n")), 1);
+
+  EXPECT_EQ(later.tick_count(), 10ULL * 20'000'000'000'000ULL);
+  EXPECT_EQ(later.steps_of_tick(), 44);
+}
+
+TEST_F(StartState, IsWhereASceneWithOtherParametersGoesOn) {
+  for (const std::string reduce : {"", "reduce: [parallel]\n"}) {
+    write("run.state", saved_after(springs("whole.yaml", reduce), 20));
+    const auto scene = planned(springs("later.yaml", "start_state: run.state\n" + reduce));
+    RequestMaker maker(scene, 1);
+    Simulation before(scene, 1);
+    play(before, 5);
+
+    PreparedRequest changed = set(maker, 90);
+    ASSERT_TRUE(now(changed).go_on_from(before, changed.request.room));
+    EXPECT_EQ(now(changed).world().step_count(), 100u);
+    EXPECT_EQ(now(changed).start_s(), before.start_s());
+    maker.commit(std::move(changed));
+
+    PreparedRequest again = reset(maker);
+    EXPECT_EQ(now(again).simulated_s(), 0.0);
+    EXPECT_EQ(again.done,
+              "'springs' restarts at 0 s, as 'run.state' was saved with other parameters");
+    maker.commit(std::move(again));
+
+    maker.commit(set(maker, 100));
+    PreparedRequest as_saved = reset(maker);
+    EXPECT_EQ(now(as_saved).world().step_count(), 80u) << reduce;
+    EXPECT_EQ(as_saved.done, "'springs' restarts");
+  }
 }
 
 TEST_F(StartState, WithoutAFileIsRefused) {

@@ -53,6 +53,26 @@ TEST(TickDivision, StepsLieInTheirTicksAndTheirCountIsExact) {
   }
 }
 
+TEST(TickDivision, GoesToAnyTickAsByCounting) {
+  const std::pair<double, double> rates[] = {{44100, 1000}, {4000, 1000},   {48000, 1100},
+                                             {1000, 999.9}, {1000.5, 1000}, {96000, 96000}};
+  for (const auto& [step_hz, gesture_hz] : rates) {
+    TickDivision counted(step_hz, gesture_hz);
+    std::uint64_t step = 0;
+    for (std::uint64_t tick = 0; tick < 3000; ++tick) {
+      TickDivision division(step_hz, gesture_hz);
+      EXPECT_EQ(division.go_behind(step), tick) << step_hz << " of step " << step;
+      ASSERT_EQ(division.steps(), counted.steps());
+      EXPECT_EQ(division.share(1), counted.share(1));
+      for (int j = 1; j < counted.steps(); ++j)
+        EXPECT_EQ(TickDivision(step_hz, gesture_hz).go_behind(step + static_cast<std::uint64_t>(j)),
+                  std::nullopt);
+      step += static_cast<std::uint64_t>(counted.steps());
+      counted.next();
+    }
+  }
+}
+
 /// A key alone on a spring, and its position as a signal of each step.
 std::string key_text(double step_rate_hz) {
   return "cordis: 1\nname: key\nspace: 1\nstep: {rate_hz: " + std::to_string(step_rate_hz) + R"(}
