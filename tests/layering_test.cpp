@@ -143,7 +143,7 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
      {"sim_node/plan/reduction/"}},
     {{"sim_node/engine/"},
      {"sim_node/scene/", "sim_node/plan/"},
-     {"sim_node/checks/"},
+     {"sim_node/checks/", "sim_node/run/tick_division."},
      {"sim_node/devices/"},
      {"sim_node/run/"},
      {"sim_node/"}},
