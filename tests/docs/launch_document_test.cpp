@@ -199,7 +199,8 @@ TEST(LaunchDocument, ListsKeysThatAreReadOnlyWhenTheyArePresent) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string path = entry.path().string();
       const bool reads_scenes = path.find("/scene/") != std::string::npos;
-      const bool reads_states = path.ends_with("/start_state.cpp");  // `cordis simulate` writes them
+      const bool reads_states =
+          path.ends_with("/start_state.cpp");  // `cordis simulate` writes them
       if (entry.path().extension() != ".cpp" || reads_scenes || reads_states) continue;
       ++files;
       const std::string text = text_of(entry.path());
