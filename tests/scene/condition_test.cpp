@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/engine/variables.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/parameters.h"
 #include "tests/scene/bad_scene.h"
@@ -248,6 +249,38 @@ TEST(Variable, HasOneHashOnAllWidthsAndOverASnapshot) {
   }
 }
 
+TEST(Variable, OfChangesIsTheSumOverAllStateMachinesAlsoWhenItIsRestored) {
+  const auto ticks = [](const char* every_s) {
+    const std::string exit = ", when: age_s > " + std::string(every_s) + "}]}";
+    return "{states: {tick: {exits: [{to: tock" + exit + ", tock: {exits: [{to: tick" + exit +
+           "}}\n";
+  };
+  const Scene scene =
+      sound_scene(2, "liaisons:\n  slow: " + ticks("0.0065") + "  fast: " + ticks("0.0015") +
+                         "matter:\n  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
+                         "links:\n"
+                         "  - {liaison: slow, between: [\"m[0]\", \"m[1]\"]}\n"
+                         "  - {liaison: fast, between: [\"m[0]\", \"m[1]\"]}\n");
+  const engine::Variable changes{.quantity = engine::VariableKind::kChanges,
+                                 .direction = engine::Vec3::Zero()};
+  World world = world_of(scene);
+  double last = 0.0;
+  for (int n = 0; n < 200; ++n) {
+    if (n % 50 == 0) {
+      World restored = world_of(scene);
+      restored.restore(world.snapshot());
+      std::swap(restored, world);
+    }
+    world.step();
+    std::uint64_t sum = 0;
+    for (const std::uint32_t from : {0U, 1U})
+      sum += world.change_count(0, from, 1 - from) + world.change_count(1, from, 1 - from);
+    last = value_of(changes, world, {});
+    ASSERT_EQ(last, static_cast<double>(sum)) << n;
+  }
+  EXPECT_GT(last, 100.0);
+}
+
 TEST(Variable, CostsNoAllocation) {
   const Scene scene = sound_scene(2, many("stored > bob[0].position_x_m + jumper.age_s"));
   World world = world_of(scene);
@@ -401,6 +434,18 @@ TEST(Variable, ThatThousandsOfCopiesMisspellIsOneProblemAtOnce) {
   EXPECT_EQ(problems.all().front().message, "no matter, port or links are named 'bold'");
 }
 
+TEST(Variable, OfThousandsOfCopiesAreOneEach) {
+  const Scene scene = sound_scene(
+      2, "liaisons:\n" + until("latch", "bolt.age_s > 1 and bolt.age_s < 2 and time_s > 1") +
+             "parts:\n"
+             "  door:\n"
+             "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
+             "    links: [{liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: bolt}]\n"
+             "matter:\n"
+             "  doors: {part: door, repeat: {count: 5000, translate_m: [1, 0]}}\n");
+  EXPECT_EQ(scene.network.variables.size(), 5001u);
+}
+
 TEST_P(BadConditions, AreReportedOnceAtTheirPlace) {
   const std::string text =
       "liaisons:\n"
@@ -462,19 +507,33 @@ INSTANTIATE_TEST_SUITE_P(
             "'when' in exit of state 'x' of liaison 'l' names 'time', which is no quantity "
             "and no parameter",
             "did you mean 'time_s'?"},
+        BadCondition{"force_n^[3] > 2",
+                     "'when' in exit of state 'x' of liaison 'l' does not expect '[' here", ""},
+        BadCondition{"age_s > 1 and 2 < lumps^[0][1]",
+                     "'when' in exit of state 'x' of liaison 'l' does not expect '[' here", ""},
+        BadCondition{"^sin[4](age_s) > 0",
+                     "'when' in exit of state 'x' of liaison 'l' needs brackets after 'sin'",
+                     "write sin(...)"},
         BadCondition{"bolt^. > 1",
                      "'when' in exit of state 'x' of liaison 'l' does not expect '.' here", ""}));
 
-INSTANTIATE_TEST_SUITE_P(OutsideOfConditions, BadScenes,
-                         testing::Values(BadScene{
-                             kHead2,
+INSTANTIATE_TEST_SUITE_P(
+    OutsideOfConditions, BadScenes,
+    testing::Values(BadScene{kHead2,
                              R"(liaisons:
   l: {elasticity: "3 * ^m.position_x_m"}
 matter:
   m: {kind: mass, mass_kg: 1, at_m: [0, 0]}
 )",
                              "elasticity of liaison 'l' cannot ask for 'm.position_x_m'",
-                             "only a condition, 'when', asks for what is outside its link"}));
+                             "only a condition, 'when', asks for what is outside its link"},
+                    BadScene{kHead2,
+                             R"(liaisons:
+  l: {parameters: {k: 3}, elasticity: "k^[2] * elongation_m"}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)",
+                             "elasticity of liaison 'l' does not expect '[' here", ""}));
 
 }  // namespace
 }  // namespace cordis::scene

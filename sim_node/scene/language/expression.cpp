@@ -259,8 +259,10 @@ class Parser {
     return {Type::kNumber, offset};
   }
 
-  /// Goes on behind a name: [3], .name, and so on. @return whether there was a dot
+  /// Goes on behind a name: [3], .name, and so on. Takes nothing where there is no dot.
+  /// @return whether there was one
   bool take_path() {
+    const std::size_t begin = offset_;
     bool has_dot = false;
     while (offset_ + 1 < text_.size()) {
       if (text_[offset_] == '.' && is_letter(text_[offset_ + 1])) {
@@ -270,9 +272,10 @@ class Parser {
       }
       std::size_t end = offset_ + 1;
       while (end < text_.size() && is_digit(text_[end])) ++end;
-      if (text_[offset_] != '[' || end >= text_.size() || text_[end] != ']') return has_dot;
+      if (text_[offset_] != '[' || end >= text_.size() || text_[end] != ']') break;
       offset_ = end + 1;
     }
+    if (!has_dot) offset_ = begin;
     return has_dot;
   }
 
