@@ -71,19 +71,6 @@ double value_of_link(const Variable& variable, const World& world) noexcept {
                            : link.stiffness * elongation + link.viscosity * stretch.elongation_rate;
 }
 
-double changes_in(const World& world) noexcept {
-  std::uint64_t changes = 0;
-  const std::vector<StateMachine>& state_machines = world.network().description().state_machines;
-  for (std::uint32_t b = 0; b < state_machines.size(); ++b) {
-    const auto states = static_cast<std::uint32_t>(state_machines[b].states.size());
-    for (std::uint32_t source = 0; source < states; ++source) {
-      for (std::uint32_t target = 0; target < states; ++target)
-        changes += world.change_count(b, source, target);
-    }
-  }
-  return static_cast<double>(changes);
-}
-
 double awake_in(const World& world) noexcept {
   return 1.0 - world.asleep_count() / static_cast<double>(world.network().mass_count());
 }
@@ -124,7 +111,7 @@ double value_of(const Variable& variable, const World& world, const Energy& ener
     case VariableKind::kTime:
       return static_cast<double>(world.step_count()) * world.network().step();
     case VariableKind::kChanges:
-      return changes_in(world);
+      return static_cast<double>(world.total_change_count());
     case VariableKind::kAwake:
       return awake_in(world);
     default:

@@ -8,7 +8,7 @@
 
 namespace cordis::engine {
 
-/// The value of a variable after the last step. Real time: O(1), of kChanges O(states squared).
+/// The value of a variable after the last step. Real time: O(1).
 /// @param energy  of the world, where the variable is an energy
 /// Precondition: it is no count, and what it is of exists.
 double value_of(const Variable& variable, const World& world, const Energy& energy) noexcept;

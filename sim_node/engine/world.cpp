@@ -123,6 +123,10 @@ std::uint64_t World::change_count(std::uint32_t state_machine, std::uint32_t fro
   return state_->log.change_count(state_machine, from, to);
 }
 
+std::uint64_t World::total_change_count() const noexcept {
+  return state_->log.total_change_count();
+}
+
 std::vector<BoundPair> World::bound_pairs(std::size_t set) const {
   std::vector<BoundPair> pairs;
   const VisitBoundPair add = [](void* owner, const BoundPair& pair) {

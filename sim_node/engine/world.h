@@ -93,6 +93,8 @@ class World {
   /// them.
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
+  /// The sum of all these counts. Real time: O(1).
+  std::uint64_t total_change_count() const noexcept;
 
   /// The bound pairs of a set after the last step, in the order of its sums. Not in real time:
   /// allocates. Precondition: the set exists.

@@ -1,6 +1,8 @@
 // sim_node/engine/links/event_log.cpp
 #include "sim_node/engine/links/event_log.h"
 
+#include <numeric>
+
 namespace cordis::engine {
 
 EventLog::EventLog(const StateTable& table, std::size_t capacity) : events_(capacity) {
@@ -20,6 +22,7 @@ void EventLog::begin_step() noexcept {
 
 void EventLog::add(const LinkEvent& event) noexcept {
   ++change_count_[place(event.state_machine, event.from, event.to)];
+  ++total_change_count_;
   if (count_ == events_.size()) {
     ++lost_;
     return;
@@ -34,7 +37,10 @@ std::uint64_t EventLog::change_count(std::uint32_t state_machine, std::uint32_t 
 
 void EventLog::serialize(Archive& archive) {
   archive.wholes(std::span(change_count_), [](std::size_t, std::uint64_t) { return true; });
-  if (archive.restores()) begin_step();
+  if (!archive.restores()) return;
+  total_change_count_ =
+      std::accumulate(change_count_.begin(), change_count_.end(), std::uint64_t{0});
+  begin_step();
 }
 
 std::size_t EventLog::place(std::uint32_t state_machine, std::uint32_t from,

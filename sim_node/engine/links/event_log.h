@@ -28,6 +28,8 @@ class EventLog {
   /// How often a state machine went from a state to another since step 0.
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;
+  /// How often any of them changed since step 0. Real time: O(1).
+  std::uint64_t total_change_count() const noexcept { return total_change_count_; }
 
   /// The counts. One that is restored has no events.
   void serialize(Archive& archive);
@@ -46,6 +48,7 @@ class EventLog {
   std::uint32_t lost_ = 0;
   std::vector<Matrix> matrices_;  // one per state machine
   std::vector<std::uint64_t> change_count_;
+  std::uint64_t total_change_count_ = 0;  // their sum
 };
 
 }  // namespace cordis::engine

@@ -2,6 +2,8 @@
 #include "sim_node/scene/sections/conditions.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -28,6 +30,16 @@ struct ConditionWord {
   std::string text;
   const QuantityWord* quantity;
   int axis;  // -1: none, or the MAT's own
+};
+
+/// Any order in which equal variables are neither before each other.
+struct InOrder {
+  static auto key_of(const Variable& variable) {
+    const engine::Vec3& direction = variable.direction;
+    return std::tuple(variable.quantity, variable.kind, variable.index, direction.x(),
+                      direction.y(), direction.z(), variable.offset);
+  }
+  bool operator()(const Variable& a, const Variable& b) const { return key_of(a) < key_of(b); }
 };
 
 std::string unit_ending(const std::string& unit) {
@@ -89,14 +101,14 @@ class ConditionReader {
   /// The value of a variable; equal ones share a number.
   Instruction value_of(const Variable& variable) {
     std::vector<Variable>& variables = assembly_.scene.network.variables;
-    const auto known = std::find(variables.begin(), variables.end(), variable);
-    const auto number = static_cast<std::uint32_t>(known - variables.begin());
-    if (known == variables.end()) {
+    const auto next = static_cast<std::uint32_t>(variables.size());
+    const auto [known, is_new] = numbers_.emplace(variable, next);
+    if (is_new) {
       variables.push_back(variable);
       if (variable.quantity == engine::VariableKind::kForce)
         assembly_.scene.network.kept_awake.push_back(variable.index);
     }
-    return {Operation::kVariable, engine::Quantity::kDistance, 0.0, number};
+    return {Operation::kVariable, engine::Quantity::kDistance, 0.0, known->second};
   }
 
   Instruction of_scene() {
@@ -238,6 +250,7 @@ class ConditionReader {
 
   Assembly& assembly_;
   const std::vector<Signal>& signals_;
+  std::map<Variable, std::uint32_t, InOrder> numbers_;  // of the variables of the network
   std::set<std::tuple<std::string, int, int>> failed_;  // places, reported but for quiet ones
   bool is_quiet_ = false;
   const VariableReference* reference_ = nullptr;  // that is read
