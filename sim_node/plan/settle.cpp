@@ -64,7 +64,7 @@ NetworkDescription undamped(NetworkDescription network) {
 std::vector<Vec3> loads_of(const NetworkDescription& network) {
   std::vector<Vec3> load(network.mats.size(), Vec3::Zero());
   for (const engine::Drive& drive : network.drives) {
-    if (drive.is_force) load[drive.mat] = value_at(network, drive, 0.0);
+    if (drive.is_force) load[drive.mat] += value_at(network, drive, 0.0);
   }
   return load;
 }

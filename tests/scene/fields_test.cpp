@@ -1,9 +1,13 @@
 // tests/scene/fields_test.cpp -- gravity that changes in time, and a medium that flows.
 #include <cmath>
 #include <memory>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "sim_node/engine/world.h"
 #include "tests/scene/bad_scene.h"
+#include "tests/support/test_seed.h"
 
 namespace cordis::scene {
 namespace {
@@ -88,6 +92,47 @@ ports:
   EXPECT_EQ(scene.network.drives[0].mat, 1u);
   EXPECT_EQ(value_at(scene.network, scene.network.drives[0], 2.0), Vec3(-11, 0, 0));
   EXPECT_EQ(scene.network.gravity, Vec3(0, 0, 0));
+}
+
+TEST(Fields, PushEachMassWithItsOwnShareOfTwoFunctions) {
+  std::mt19937 random(test::test_seed());
+  std::uniform_real_distribution<double> any(0.1, 3.0);
+  const double viscosity = any(random);
+  std::string matter;
+  std::vector<double> masses;
+  for (int i = 0; i < 50; ++i) {
+    masses.push_back(any(random));
+    matter += "  m" + std::to_string(i) + ": {kind: mass, at_m: [" + std::to_string(i) +
+              ", 0], mass_kg: " + config::number_text(masses.back()) + "}\n";
+  }
+  const Scene scene =
+      sound_scene(2,
+                  "world: {gravity_m_per_s2: [sin(time_s), -9], flow_m_per_s: [4, time_s ^ 2], "
+                  "viscosity_n_s_per_m: " +
+                      config::number_text(viscosity) + "}\nmatter:\n" + matter);
+
+  EXPECT_EQ(scene.network.time_functions.size(), 2u);
+  for (const double time : {0.0, 0.7, 2.0}) {
+    std::vector<Vec3> force(masses.size(), Vec3::Zero());
+    for (const engine::Drive& drive : scene.network.drives)
+      force[drive.mat] += value_at(scene.network, drive, time);
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      const Vec3 expected =
+          masses[i] * Vec3(std::sin(time), -9, 0) + viscosity * Vec3(4, time * time, 0);
+      EXPECT_LT((force[i] - expected).norm(), 1e-13 * expected.norm()) << i;  // some roundings
+    }
+  }
+}
+
+TEST(Fields, MayBothBeAsDeepAsOneFormulaMayBe) {
+  std::string deep = "time_s";
+  for (int level = 1; level < 16; ++level) deep = "1 + (" + deep + ")";  // of the stack
+
+  const Scene scene = sound_scene(1, "world: {viscosity_n_s_per_m: 1, gravity_m_per_s2: \"" + deep +
+                                         "\", flow_m_per_s: \"" + deep + "\"}\n" + kFree);
+  World world = world_of(scene);
+
+  EXPECT_EQ(world.network().description().drives.size(), 2 * 2u);
 }
 
 class BadFields : public testing::TestWithParam<BadScene> {};

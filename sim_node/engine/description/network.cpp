@@ -203,8 +203,11 @@ void check_drives(const NetworkDescription& description) {
   check_each(description, description.time_functions, "time function", check_time_function);
   check_each(description, description.drives, "drive", check_drive);
   for (std::size_t i = 1; i < description.drives.size(); ++i) {
-    require(description.drives[i - 1].mat < description.drives[i].mat, "the drives",
-            "in the order of their MATs, one each");
+    const Drive& before = description.drives[i - 1];
+    const Drive& drive = description.drives[i];
+    const bool adds = before.mat == drive.mat && before.is_force && drive.is_force;
+    require(before.mat < drive.mat || adds, "the drives",
+            "in the order of their MATs, a position alone");
   }
 }
 

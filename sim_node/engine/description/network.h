@@ -110,7 +110,7 @@ struct NetworkDescription {
   std::vector<SetLiaison> sets;
   std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
   std::vector<TimeFunction> time_functions;
-  std::vector<Drive> drives;        ///< in the order of their MATs, at most one each
+  std::vector<Drive> drives;  ///< in the order of their MATs; of a position one each, forces add up
   std::vector<Variable> variables;  ///< that conditions ask for: Operation::kVariable
 
   Vec3 gravity_on(const Mat& mat) const noexcept {

@@ -33,10 +33,13 @@ PortInputs::PortInputs(const NetworkDescription& description)
   function_value_.resize(description.time_functions.size(), Vec3::Zero());
   for (const Drive& drive : description.drives) {
     (drive.is_force ? pushing_functions_ : moving_functions_).push_back(drive.function);
-    if (drive.is_force) {
-      pushes_.push_back({&drive});
-    } else {
+    if (!drive.is_force) {
       ports_[slot_[drive.mat]].drive = &drive;
+    } else if (pushes_.empty() || pushes_.back().mat != drive.mat) {
+      pushes_.push_back({drive.mat, {&drive, 1}});
+    } else {
+      Push& push = pushes_.back();
+      push.drives = {push.drives.data(), push.drives.size() + 1};
     }
   }
   for (auto* functions : {&moving_functions_, &pushing_functions_}) {
@@ -77,9 +80,8 @@ Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
 }
 
 const PortInputs::Push* PortInputs::push_on(std::uint32_t mat) const noexcept {
-  const auto found =
-      std::ranges::lower_bound(pushes_, mat, {}, [](const Push& push) { return push.drive->mat; });
-  return found != pushes_.end() && found->drive->mat == mat ? &*found : nullptr;
+  const auto found = std::ranges::lower_bound(pushes_, mat, {}, &Push::mat);
+  return found != pushes_.end() && found->mat == mat ? &*found : nullptr;
 }
 
 std::uint32_t PortInputs::take_refused() noexcept {
@@ -114,7 +116,9 @@ void PortInputs::find_values(const std::vector<std::uint32_t>& functions,
 void PortInputs::push_at(std::uint64_t step) noexcept {
   find_values(pushing_functions_, step);
   for (Push& push : pushes_) {
-    const Vec3 force = placed(*push.drive, function_value_[push.drive->function]);
+    Vec3 force = placed(push.drives.front(), function_value_[push.drives.front().function]);
+    for (const Drive& drive : push.drives.subspan(1))
+      force += placed(drive, function_value_[drive.function]);
     if (!force.allFinite()) ++refused_drives_;
     push.force = force.allFinite() ? force : Vec3(Vec3::Zero());
   }
@@ -180,7 +184,7 @@ double PortInputs::kick(MatArray& mats) noexcept {
     work += 0.5 * held.force.dot(mats.position(held.mat) - mats.delayed(held.mat));
   }
   for (Push& push : pushes_) {
-    const std::uint32_t mat = push.drive->mat;
+    const std::uint32_t mat = push.mat;
     push.link_force = mats.force(mat);
     mats.set_force(mat, push.link_force + push.force);
     work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
@@ -191,7 +195,7 @@ double PortInputs::kick(MatArray& mats) noexcept {
 double PortInputs::release(MatArray& mats) const noexcept {
   double work = 0.0;
   for (const Push& push : pushes_) {
-    const std::uint32_t mat = push.drive->mat;
+    const std::uint32_t mat = push.mat;
     mats.set_force(mat, push.link_force);
     work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim_node/engine/core/archive.h"
@@ -77,7 +78,8 @@ class PortInputs {
     const Drive* drive = nullptr;    // of the network; none: moved from outside
   };
   struct Push {
-    const Drive* drive;              // of the network
+    std::uint32_t mat;
+    std::span<const Drive> drives;   // of the network, whose forces add up
     Vec3 force = Vec3::Zero();       // [N]
     Vec3 link_force = Vec3::Zero();  // as of HeldForce
   };

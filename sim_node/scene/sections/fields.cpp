@@ -1,10 +1,11 @@
 // sim_node/scene/sections/fields.cpp
 #include "sim_node/scene/sections/fields.h"
 
-#include <algorithm>
-#include <map>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/naming.h"
@@ -15,32 +16,7 @@ namespace {
 
 using config::MappingReader;
 using config::Value;
-using engine::Instruction;
 using engine::MatKind;
-using engine::Operation;
-using engine::Program;
-
-void append_formula(Program& program, const Program& other) {
-  program.code.insert(program.code.end(), other.code.begin(), other.code.end());
-}
-
-/// a + factor b, over time; an empty program is 0.
-Program sum_of_formulas(const Program& a, const Program& b, double factor) {
-  Program result = a;
-  if (b.empty()) return result;
-  append_formula(result, b);
-  Instruction scale;
-  scale.operation = Operation::kConstant;
-  scale.constant = factor;
-  Instruction times;
-  times.operation = Operation::kMultiply;
-  result.code.insert(result.code.end(), {scale, times});
-  if (a.empty()) return result;
-  Instruction plus;
-  plus.operation = Operation::kAdd;
-  result.code.push_back(plus);
-  return result;
-}
 
 /// A vector that must have a value at 0 s. Nothing after a problem.
 std::optional<AxisFormulas> read_field(MappingReader& reader, const char* key, int space,
@@ -59,15 +35,19 @@ std::optional<AxisFormulas> read_field(MappingReader& reader, const char* key, i
   return formulas;
 }
 
-/// The acceleration of a mass by the fields.
-engine::TimeFunction acceleration(const WorldFields& fields, bool falls, double share_of_flow) {
-  engine::TimeFunction function;
-  for (std::size_t axis = 0; axis < function.formula.size(); ++axis) {
-    const Program gravity = falls && fields.gravity ? (*fields.gravity)[axis] : Program{};
-    const Program flow = fields.flow ? (*fields.flow)[axis] : Program{};
-    function.formula[axis] = sum_of_formulas(gravity, flow, share_of_flow);
-  }
-  return function;
+/// The function of a field among those of a network; nothing where there is no field.
+std::optional<std::uint32_t> add_function(const std::optional<AxisFormulas>& field,
+                                          engine::NetworkDescription& network) {
+  if (!field) return std::nullopt;
+  network.time_functions.push_back({*field, {}, {}, false});
+  return static_cast<std::uint32_t>(network.time_functions.size() - 1);
+}
+
+/// Pushes a mass with a factor times a function.
+engine::Drive push_with(std::uint32_t mat, std::uint32_t function, double factor) {
+  engine::Drive push{mat, function, true};
+  for (double& entry : push.turn) entry *= factor;
+  return push;
 }
 
 }  // namespace
@@ -103,28 +83,24 @@ WorldFields read_world(const Value& section, Scene& scene, config::Problems& pro
 void add_fields(const WorldFields& fields, Scene& scene, config::Problems& problems) {
   if (!fields.gravity && !fields.flow) return;
   engine::NetworkDescription& network = scene.network;
-  std::map<std::pair<bool, double>, std::uint32_t> functions;
+  const std::optional<std::uint32_t> gravity = add_function(fields.gravity, network);
+  const std::optional<std::uint32_t> flow = add_function(fields.flow, network);
   std::vector<engine::Drive> drives;
   auto written = network.drives.begin();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
     const bool is_driven = written != network.drives.end() && written->mat == i;
     if (is_driven) drives.push_back(*written++);
-    const bool falls = fields.gravity && !mat.weightless;
-    if (mat.kind != MatKind::kMass || !(mat.mass > 0.0) || (!falls && !fields.flow)) continue;
+    const bool falls = gravity && !mat.weightless;
+    if (mat.kind != MatKind::kMass || !(mat.mass > 0.0) || (!falls && !flow)) continue;
     if (is_driven) {
       problems.error(fields.place, call_mat(scene, i).name +
                                        " is pushed by 'force_n', and cannot be pushed by gravity "
                                        "that changes or by a flow as well");
       return;
     }
-    const double share = fields.flow ? network.medium_viscosity / mat.mass : 0.0;
-    const auto next = static_cast<std::uint32_t>(network.time_functions.size());
-    const auto [function, is_new] = functions.emplace(std::pair(falls, share), next);
-    if (is_new) network.time_functions.push_back(acceleration(fields, falls, share));
-    engine::Drive push{i, function->second, true};
-    for (double& entry : push.turn) entry *= mat.mass;
-    drives.push_back(push);
+    if (falls) drives.push_back(push_with(i, *gravity, mat.mass));
+    if (flow) drives.push_back(push_with(i, *flow, network.medium_viscosity));
   }
   network.drives = std::move(drives);
 }
