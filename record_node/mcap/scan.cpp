@@ -102,6 +102,7 @@ class Scanner {
   bool knows_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
+  void return_unused();
   void find_known_chunks();
   bool is_known_chunk(std::uint64_t offset) const;
   bool is_before_known_chunk(std::uint64_t offset) const;
@@ -115,7 +116,9 @@ class Scanner {
   }
 
   std::span<const std::byte> bytes_;
-  Summary stored_;                           // of the file, where it is sound
+  Summary stored_;                               // of the file, where it is sound
+  std::vector<std::uint16_t> borrowed_schemas_;  // of stored_, as no record of the data has them
+  std::vector<std::uint16_t> borrowed_channels_;
   std::vector<std::uint64_t> known_chunks_;  // of stored_, their places in order
   std::uint64_t position_ = 0;
   Scan scan_;
@@ -163,6 +166,7 @@ bool Scanner::knows_schema(std::uint16_t id) {
   const auto stored = stored_.schemas.find(id);
   if (stored == stored_.schemas.end()) return false;
   scan_.summary.schemas.insert(*stored);
+  borrowed_schemas_.push_back(id);
   return true;
 }
 
@@ -174,7 +178,21 @@ bool Scanner::knows_channel(std::uint16_t id) {
   const std::uint16_t schema = stored->second.schema_id;
   if (schema != 0 && !knows_schema(schema)) return false;
   scan_.summary.channels.insert(*stored);
+  borrowed_channels_.push_back(id);
   return true;
+}
+
+/// Drops what was taken from the summary of the file for messages that could not be kept.
+void Scanner::return_unused() {
+  Summary& summary = scan_.summary;
+  for (const std::uint16_t id : borrowed_channels_) {
+    if (!summary.statistics.channel_message_counts.contains(id)) summary.channels.erase(id);
+  }
+  for (const std::uint16_t id : borrowed_schemas_) {
+    const bool is_used = std::ranges::any_of(
+        summary.channels, [id](const auto& channel) { return channel.second.schema_id == id; });
+    if (!is_used) summary.schemas.erase(id);
+  }
 }
 
 /// Counts the messages of a chunk and collects their index. @return what is wrong
@@ -451,6 +469,7 @@ Scan Scanner::run() {
   std::sort(scan_.damages.begin(), scan_.damages.end(),
             [](const Damage& a, const Damage& b) { return a.offset < b.offset; });
   scan_.data_end = position_;
+  return_unused();
   scan_.summary.count_records();
   return std::move(scan_);
 }

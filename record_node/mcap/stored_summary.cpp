@@ -65,6 +65,9 @@ bool is_complete(const Summary& summary) {
   const Statistics& statistics = summary.statistics;
   std::set<std::uint64_t> offsets;
   for (const ChunkIndex& chunk : summary.chunks) offsets.insert(chunk.offset);
+  for (const auto& [id, channel] : summary.channels) {
+    if (channel.schema_id != 0 && !summary.schemas.contains(channel.schema_id)) return false;
+  }
   const auto indexed = indexed_count(summary.chunks);
   if (indexed && *indexed < statistics.message_count) return false;
   return offsets.size() == summary.chunks.size() &&
