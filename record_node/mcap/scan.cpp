@@ -263,9 +263,14 @@ Scanner::Next Scanner::visit_message_index(const Record& record) {
   if (!is_exact) return Next::kDamaged;
   if (index->entries.empty()) return Next::kGoOn;
   const auto own = entries_.find(index->channel_id);
-  if (is_in_chunk_ && own != entries_.end() && is_same(own->second, *index)) {
+  const bool is_own = is_in_chunk_ && own != entries_.end() && is_same(own->second, *index);
+  // One that the last chunk has already may be that of an earlier chunk with the same messages.
+  const bool is_first =
+      is_own && !scan_.summary.chunks.back().message_index_offsets.contains(index->channel_id);
+  if (!is_first && is_moved_index(*index, record.size())) return Next::kGoOn;
+  if (is_own) {
     add_message_index(scan_.summary.chunks.back(), index->channel_id, record.size());
-  } else if (!is_moved_index(*index, record.size())) {
+  } else {
     damage(record.size(), "message index: it does not fit its chunk", /*is_loss=*/false);
   }
   return Next::kGoOn;
