@@ -18,6 +18,15 @@ double duration_of(const scene::Scene& scene, double asked_s) {
   return scene.accuracy && scene.accuracy->over_s > 0.0 ? scene.accuracy->over_s : kDefault;
 }
 
+/// A trial begins with what the description of a scene says.
+void refuse_saved_state(const scene::Scene& scene) {
+  if (!scene.start_state) return;
+  config::Problems problems;
+  problems.error(scene.start_state_place,
+                 "a lab begins with the start that a scene describes: leave out 'start_state'");
+  problems.throw_if_any();
+}
+
 /// Plays the launch file once, and keeps what its devices did.
 void record(OfflineSession& session, LabScene& lab) {
   lab.scene = scene::Scene(session.scene());
@@ -52,12 +61,14 @@ LabScene load_lab_scene(const std::string& file, double duration_s) {
   LabScene lab;
   if (config::is_launch_file(root)) {
     OfflineSession session(file);
+    refuse_saved_state(session.scene());
     lab.duration_s = duration_of(session.scene(), duration_s);
     record(session, lab);
     return lab;
   }
   lab.scene = sim::plan_scene(file, {}, problems).scene;
   problems.throw_if_any();
+  refuse_saved_state(lab.scene);
   lab.duration_s = duration_of(lab.scene, duration_s);
   for (const scene::Port& port : lab.scene.ports) {
     lab.ports.push_back(port.name + " rests: give the launch file to have it played");

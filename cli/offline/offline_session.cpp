@@ -243,7 +243,7 @@ double OfflineSession::device_value_on_axis(const scene::Port& port,
 }
 
 bool OfflineSession::has_reached(double time_s) const noexcept {
-  return this->time_s() >= time_s - 0.5 * world().network().step();
+  return this->time_s() - start_s() >= time_s - 0.5 * world().network().step();
 }
 
 void OfflineSession::play_until(double time_s, const std::function<void()>& after_tick) {

@@ -29,7 +29,7 @@ class OfflineSession {
   explicit OfflineSession(const std::string& file, const std::vector<std::string>& overrides = {});
   ~OfflineSession();
 
-  /// Plays on until so much time is simulated. @param after_tick  called once per gesture period
+  /// Plays on until so much time is simulated since the start. @param after_tick  called once per gesture period
   /// @throws std::runtime_error when the scene diverges.
   void play_until(double time_s, const std::function<void()>& after_tick = {});
 
@@ -38,7 +38,8 @@ class OfflineSession {
   /// sim::Simulation::failure().
   bool play_tick(const std::function<void()>& after_step = {});
 
-  /// True if so much time is simulated, to half a step: as a sim_node counts its `duration_s`.
+  /// True if so much time is simulated since the start, to half a step: as a sim_node counts its
+  /// `duration_s`.
   bool has_reached(double time_s) const noexcept;
 
   /// `duration_s` of the sim_node; 0 when the file says none [s].
@@ -50,6 +51,8 @@ class OfflineSession {
   const engine::World& world() const noexcept { return loaded_->simulation.world(); }
   const scene::Scene& scene() const noexcept { return loaded_->simulation.scene(); }
   double time_s() const noexcept { return loaded_->simulation.simulated_s(); }
+  /// 0, or the time of the saved state that the scene began from [s].
+  double start_s() const noexcept { return loaded_->simulation.start_s(); }
 
   /// True if a device plays this port; its driver.
   bool plays(const scene::Port& port) const noexcept;

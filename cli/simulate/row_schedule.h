@@ -16,7 +16,7 @@ class RowSchedule {
   /// True if the rows are those of complete gesture periods, as on `scene/signals`.
   bool is_by_tick() const noexcept { return kind_ == Kind::kTick; }
 
-  /// True if this step has a row. To be asked for each step, in order, from 1; with is_by_tick() for
+  /// True if this step has a row. To be asked for each step since the start, in order, from 1; with is_by_tick() for
   /// none. Of a span of time these are the steps nearest to its multiples.
   bool has_row(std::uint64_t step) noexcept;
 

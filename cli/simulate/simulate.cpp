@@ -2,13 +2,12 @@
 #include "cli/simulate/simulate.h"
 
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +17,7 @@
 #include "cli/simulate/event_file.h"
 #include "cli/simulate/row_schedule.h"
 #include "cli/simulate/session_table.h"
+#include "cli/simulate/state_file.h"
 #include "cli/table/column_summary.h"
 #include "cli/table/sound_file.h"
 #include "sim_node/checks/settling.h"
@@ -42,6 +42,7 @@ class Recording {
       : session_(session),
         table_(session, options.mats),
         schedule_(options.every, session.scene().step_rate_hz),
+        first_step_(session.world().step_count()),
         summaries_(table_.columns().size()) {
     const scene::Scene& scene = session.scene();
     tables_ = make_table_files(options, table_.columns());
@@ -55,7 +56,8 @@ class Recording {
 
   void take_step() {
     if (sound_ != nullptr) take_sound();
-    if (!schedule_.is_by_tick() && schedule_.has_row(session_.world().step_count())) take_row();
+    if (!schedule_.is_by_tick() && schedule_.has_row(session_.world().step_count() - first_step_))
+      take_row();
   }
   void take_tick() {
     take_events();
@@ -149,6 +151,7 @@ class Recording {
   const OfflineSession& session_;
   SessionTable table_;
   RowSchedule schedule_;
+  std::uint64_t first_step_;  // of the saved state that it began from
   std::vector<ColumnSummary> summaries_;
   std::vector<std::unique_ptr<TableFile>> tables_;
   std::optional<EventFile> events_;
@@ -161,34 +164,13 @@ class Recording {
   std::uint64_t lost_events_ = 0;
 };
 
-/// @throws UsageError where the file for the state is the one that is simulated, or another output
-void refuse_shared_state_file(const SimulateOptions& options) {
-  if (options.state_file.empty()) return;
-  std::error_code failure;
-  if (std::filesystem::equivalent(options.state_file, options.file, failure)) {
-    throw UsageError("--save-state would overwrite " + options.file);
-  }
-  const std::pair<const char*, const std::string&> others[] = {{"--csv", options.csv_file},
-                                                               {"--npz", options.npz_file},
-                                                               {"--wav", options.wav_file},
-                                                               {"--events", options.events_file},
-                                                               {"--summary", options.summary_file}};
-  for (const auto& [option, file] : others) {
-    if (file == options.state_file) {
-      throw UsageError(std::string(option) + " and --save-state name the same file");
-    }
-  }
-}
-
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const std::function<bool()>& stops) {
-  refuse_shared_files(options, options.summary_file);
-  refuse_shared_state_file(options);
+  refuse_shared_files(options, options.summary_file, options.state_file);
   OfflineSession session(options.file, options.overrides);
   const double duration_s = duration_of(options, session);
-  const double start_s = session.simulation().start_s();
-  std::optional<OutputFile> state;
+  std::optional<StateFile> state;
   if (!options.state_file.empty()) state.emplace(options.state_file);
   Recording recording(options, session);
   SimulateResult result;
@@ -198,7 +180,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   std::function<void()> after_step;
   if (recording.wants_steps()) after_step = [&recording] { recording.take_step(); };
   const auto begun = WallClock::now();
-  while (!session.has_reached(start_s + duration_s) && !result.is_stopped) {
+  while (!session.has_reached(duration_s) && !result.is_stopped) {
     if (!session.play_tick(after_step)) {
       recording.take_events();
       break;
@@ -211,13 +193,12 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   result.drives = drive_trouble_text(session.simulation().troubles());
   result.integration_error = session.integration_error_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
-  result.simulated_s = session.time_s() - start_s;
+  result.simulated_s = session.time_s() - session.start_s();
   result.step_count = session.world().step_count();
   result.state_hash = session.world().state_hash();
   recording.finish(result);
   if (state && result.failure.empty()) {
-    state->write(sim::state_file_text(session.scene(), session.world().snapshot()));
-    state->flush();
+    state->finish(sim::state_file_text(session.scene(), session.world().snapshot()));
   }
   return result;
 }

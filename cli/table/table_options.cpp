@@ -2,6 +2,8 @@
 #include "cli/table/table_options.h"
 
 #include <cstddef>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "cli/table/csv_file.h"
@@ -20,16 +22,28 @@ void add_table_files(Verb& verb, TableOptions& options, const std::string& rows)
             "Also the positions of these MATs: string, string[3], string[2..5]");
 }
 
-void refuse_shared_files(const TableOptions& options, const std::string& summary_file) {
+namespace {
+
+/// True if two words name one file, however they are written.
+bool are_one_file(const std::string& one, const std::string& other) {
+  std::error_code failure;
+  if (one == other || std::filesystem::equivalent(one, other, failure)) return true;
+  const std::filesystem::path place = std::filesystem::weakly_canonical(one, failure);
+  return !failure && place == std::filesystem::weakly_canonical(other, failure) && !failure;
+}
+
+}  // namespace
+
+void refuse_shared_files(const TableOptions& options, const std::string& summary_file,
+                         const std::string& state_file) {
   const std::vector<std::pair<std::string, const std::string*>> files{
-      {"--csv", &options.csv_file},
-      {"--npz", &options.npz_file},
-      {"--wav", &options.wav_file},
-      {"--events", &options.events_file},
-      {"--summary", &summary_file}};
+      {"--csv", &options.csv_file}, {"--npz", &options.npz_file},
+      {"--wav", &options.wav_file}, {"--events", &options.events_file},
+      {"--summary", &summary_file}, {"--save-state", &state_file}};
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!files[i].second->empty() && *files[i].second == *files[j].second)
+      if (files[i].second->empty() || files[j].second->empty()) continue;
+      if (are_one_file(*files[i].second, *files[j].second))
         throw UsageError(files[j].first + " and " + files[i].first + " name the same file");
     }
   }

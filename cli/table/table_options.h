@@ -28,8 +28,10 @@ struct TableOptions {
 void add_table_files(Verb& verb, TableOptions& options, const std::string& rows);
 
 /// @param summary_file  of --summary, for a verb that has it; else empty
+/// @param state_file  of --save-state, likewise
 /// @throws UsageError when two options name one file, or one that has to be a file is stdout
-void refuse_shared_files(const TableOptions& options, const std::string& summary_file);
+void refuse_shared_files(const TableOptions& options, const std::string& summary_file = {},
+                         const std::string& state_file = {});
 
 /// Makes the files of the table.
 /// @throws UsageError for a file that cannot be made

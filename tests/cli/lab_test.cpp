@@ -17,6 +17,9 @@
 
 #include "cli/lab/lab_chart.h"
 #include "cli/lab/lab_report.h"
+#include "sim_node/checks/planned_scene.h"
+#include "sim_node/checks/start_state.h"
+#include "sim_node/run/simulation.h"
 
 namespace cordis::cli {
 namespace {
@@ -57,6 +60,26 @@ links:
   const std::string place_ = testing::TempDir() + "lab_test." + std::to_string(getpid());
   LabOptions options_{place_ + ".yaml", place_, 2.0, 2, true, false};
 };
+
+TEST_F(Lab, RefusesASceneThatStartsFromASavedState) {
+  config::Problems problems;
+  const auto bob =
+      std::make_shared<const scene::Scene>(sim::plan_scene(options_.file, {}, problems).scene);
+  const std::string state = place_ + ".state";
+  std::ofstream(state) << sim::state_file_text(*bob, sim::Simulation(bob, 1).world().snapshot());
+  write("start_state: " + state + "\n");
+  std::string refusal;
+  try {
+    run();
+  } catch (const config::ConfigError& error) {
+    refusal = error.what();
+  }
+  EXPECT_NE(
+      refusal.find("a lab begins with the start that a scene describes: leave out 'start_state'"),
+      std::string::npos)
+      << refusal;
+  std::filesystem::remove(state);
+}
 
 TEST_F(Lab, TheErrorIsThatOfThePhase) {
   // x = 0.1 cos(w t); the scheme has exactly 0.1 cos(W t) with W = (2 / h) asin(w h / 2).

@@ -168,6 +168,28 @@ TEST_F(SceneViews, PlotsTheSignalsThatAreNamed) {
   EXPECT_THAT(text("all.svg"), HasSubstr("time [s]"));
 }
 
+TEST_F(SceneViews, BeginsWithTheSavedStateOfAScene) {
+  const auto scene = [this](const std::string& name, const std::string& keys) {
+    std::ofstream(path(name)) << "cordis: 1\nspace: 2\nstep: {rate_hz: 4000}\n"
+                              << keys << R"(
+matter: {stone: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, 0]}}
+signals: {x: {of: stone, quantity: position, axis: x}}
+)";
+    return path(name);
+  };
+  ASSERT_EQ(run({"simulate", scene("whole.yaml", ""), "--duration", "2s", "--save-state",
+                 path("run.state")}),
+            kSuccess)
+      << error_;
+  const std::string later = scene("later.yaml", "start_state: run.state\n");
+
+  ASSERT_EQ(run({"film", later, "--duration", "0.2s", "--fps", "10", "-o", path("f/")}), kSuccess)
+      << error_;
+  EXPECT_NE(text("f/frame_00001.png"), text("f/frame_00002.png"));
+  ASSERT_EQ(run({"plot", later, "--duration", "0.1s", "-o", path("x.svg")}), kSuccess) << error_;
+  EXPECT_THAT(text("x.svg"), HasSubstr("2.1"));
+}
+
 TEST_F(SceneViews, SaysWhenTheSceneEndsTooEarly) {
   EXPECT_EQ(run({"chronogram", kTake, "--frames", "100", "--every", "1s", "-o", path("a.svg")}),
             kLoss);

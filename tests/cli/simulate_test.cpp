@@ -167,6 +167,55 @@ TEST_F(Simulate, SavesTheStateThatASceneGoesOnFrom) {
   EXPECT_THAT(later, HasSubstr("after 2000 steps"));
 }
 
+TEST_F(Simulate, CountsRowsFromASavedStateOn) {
+  const std::string scene = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({scene, "--duration", "0.25s", "--save-state", path("stone.state")}), kSuccess);
+  const std::string on = put("on.yaml", kFallingOn);
+  for (const std::string every : {"0.01s", "40"}) {
+    ASSERT_EQ(run({on, "--duration", "0.1s", "--every", every, "--csv", path("on.csv")}), kSuccess)
+        << error_;
+    const auto rows = table("on.csv");
+    ASSERT_EQ(rows.size(), 10u) << every;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      EXPECT_DOUBLE_EQ(rows[i][0], 0.25 + 0.01 * static_cast<double>(i + 1));
+  }
+}
+
+TEST_F(Simulate, SavesAStateInPlaceOfNothingButAState) {
+  const std::string scene = put("fall.yaml", kFalling);
+  const std::string launch =
+      put("launch.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: fall.yaml}\n");
+  const std::string state = put("old.state", "cordis_state: 1\n");
+
+  EXPECT_EQ(run({launch, "--duration", "0.1s", "--save-state", scene}), kBadInput);
+  EXPECT_THAT(error_, HasSubstr("--save-state would overwrite " + scene));
+  EXPECT_EQ(text_of("fall.yaml"), kFalling);
+  EXPECT_EQ(
+      run({launch, "--duration", "0.1s", "--csv", state, "--save-state", folder_ + "/./old.state"}),
+      kBadInput);
+  EXPECT_THAT(error_, HasSubstr("--csv and --save-state name the same file"));
+  EXPECT_EQ(run({launch, "--duration", "0.1s", "--save-state", state}), kSuccess) << error_;
+  EXPECT_THAT(text_of("old.state"), HasSubstr("step: 400\n"));
+}
+
+TEST_F(Simulate, ARunThatFailsLeavesTheOldState) {
+  const std::string launch = put("d.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: '" +
+                                               put("div.yaml", kDiverging) + "', force: true}\n");
+  put("old.state", "cordis_state: 1\n");
+  const auto files = [this] {
+    const std::filesystem::directory_iterator entries(folder_);
+    return std::distance(begin(entries), end(entries));
+  };
+  const auto before = files();
+
+  EXPECT_EQ(run({launch, "--duration", "2s", "--save-state", path("old.state")}), kFailure);
+
+  EXPECT_EQ(text_of("old.state"), "cordis_state: 1\n");
+  EXPECT_EQ(files(), before);
+  EXPECT_EQ(run({launch, "--duration", "2s", "--save-state", path("none/a.state")}), kBadInput);
+  EXPECT_THAT(error_, HasSubstr("No such file or directory"));
+}
+
 TEST_F(Simulate, TakesRowsByTickByStepsAndByTime) {
   const std::string scene = put("fall.yaml", kFalling);
   ASSERT_EQ(run({scene, "--duration", "0.1s", "--every", "step", "--csv", path("all.csv")}), 0);
@@ -304,6 +353,8 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
       {{scene, "--duration", "1s", "--csv", path("x"), "--npz", path("x")}, "name the same file"},
       {{scene, "--duration", "1s", "--csv", path("x"), "--save-state", path("x")},
        "--csv and --save-state name the same file"},
+      {{scene, "--duration", "1s", "--events", path("./x"), "--wav", path("x")},
+       "name the same file"},
       {{scene, "--duration", "1s", "--save-state", scene}, "--save-state would overwrite"},
   };
   for (const auto& [words, sentence] : cases) {
