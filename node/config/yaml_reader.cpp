@@ -22,8 +22,6 @@ namespace cordis::config {
 
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
-
 /// The fault as a person would say it; unknown ones stay as yaml-cpp has them.
 std::string fault_in_words(const std::string& fault) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kFaults{{
@@ -128,9 +126,9 @@ std::string hint_for_missing_file(const std::filesystem::path& path) {
 }
 
 /// A file of the disk, or of those that the problems were given instead.
-FileBytes bytes_of(const std::string& path, const Problems& problems) {
+FileBytes bytes_of(const std::string& path, const Problems& problems, std::size_t max_bytes) {
   const std::vector<SourceFile>* files = problems.given_files();
-  if (files == nullptr) return read_regular_file(path, kMaxBytes);
+  if (files == nullptr) return read_regular_file(path, max_bytes);
   for (const SourceFile& file : *files) {
     if (file.path == path) return {file.text, {}};
   }
@@ -139,8 +137,9 @@ FileBytes bytes_of(const std::string& path, const Problems& problems) {
 
 }  // namespace
 
-Value load_file(const std::string& path, Problems& problems, const Place& referrer) {
-  const auto [bytes, reason] = bytes_of(path, problems);
+Value load_file(const std::string& path, Problems& problems, const Place& referrer,
+                std::size_t max_bytes) {
+  const auto [bytes, reason] = bytes_of(path, problems, max_bytes);
   if (!reason.empty()) {
     std::error_code failure;
     const bool missing =

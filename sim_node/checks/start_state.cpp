@@ -19,8 +19,9 @@ namespace {
 
 using config::Value;
 
-constexpr std::size_t kDigits = 16;       // of a value
-constexpr std::size_t kValuesOfLine = 8;  // in the file
+constexpr std::size_t kDigits = 16;                      // of a value
+constexpr std::size_t kValuesOfLine = 64;                // in the file
+constexpr std::size_t kMaxBytes = std::size_t{1} << 30;  // 64 values of each of a million MATs
 constexpr long kMaxSteps = 1L << 53;
 
 std::string hex_text(std::uint64_t bits) {
@@ -127,7 +128,7 @@ void read_start_state(scene::Scene& scene, config::Problems& problems) {
   const std::filesystem::path file =
       std::filesystem::path(scene.file).parent_path() / scene.start_state_file;
   const std::size_t errors_before = problems.error_count();
-  const Value root = config::load_file(file.string(), problems, scene.start_state_place);
+  const Value root = config::load_file(file.string(), problems, scene.start_state_place, kMaxBytes);
   if (!root.exists()) return;
   config::MappingReader reader(root, "a file of a state", problems);
   reader.required_integer("cordis_state", 1, 1);

@@ -154,10 +154,13 @@ Settled try_to_settle(const NetworkDescription& network, double until, std::uint
 Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
   Settled pose = try_to_settle(network, until, max_steps);
   NetworkDescription finer = network;
-  for (int halving = 0; halving < kMaxHalvings && !pose.is_finite; ++halving) {
+  std::uint64_t steps = pose.steps;
+  for (int halving = 0; halving < kMaxHalvings && !pose.is_finite && steps < max_steps; ++halving) {
     finer.step *= 0.5;
-    pose = try_to_settle(finer, until, max_steps);
+    pose = try_to_settle(finer, until, max_steps - steps);
+    steps += pose.steps;
   }
+  pose.steps = steps;
   return pose;
 }
 

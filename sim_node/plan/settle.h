@@ -17,12 +17,13 @@ struct Settled {
   bool is_finite = true;               ///< false: it diverged; the rest says nothing then
 };
 
-/// Lets a network come to rest from its start: by `cordis` at its step, or a shorter one where
-/// that diverges, without dampers, medium and velocities, and held still whenever its kinetic energy falls (kinetic damping). Each liaison stays in
-/// its state of the start, without friction; a Maxwell element keeps its start force. Ports and what is
-/// driven stay, and driven forces are those of the start. The same bits on every vector width.
+/// Lets a network come to rest from its start, without dampers, medium and velocities. It moves by
+/// `cordis` at its step, or a shorter one where that diverges. It is held still whenever its kinetic
+/// energy falls (kinetic damping). Each liaison stays in its state of the start, without friction; a
+/// Maxwell element keeps its start force. Ports and what is driven stay, and driven forces are those
+/// of the start. The same bits on every vector width.
 /// @param until  it ends once no mass is pulled by more [N]
-/// @param max_steps  it ends after so many, settled or not
+/// @param max_steps  it ends after so many of all lengths, settled or not
 Settled settle(const engine::NetworkDescription& network, double until, std::uint64_t max_steps);
 
 }  // namespace cordis::plan

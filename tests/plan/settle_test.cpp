@@ -55,6 +55,20 @@ TEST(Settle, HangsAChainBelowItsNail) {
   }
 }
 
+TEST(Settle, CountsTheStepsOfAllLengths) {
+  NetworkDescription network = chain(11, false);
+  network.step = 0.1;  // K dt^2 / m is 500: it takes six halvings to below 4
+
+  const Settled whole = settle(network, 1e-9, 200'000);
+  ASSERT_LT(whole.force, 1e-9);
+  for (const std::uint64_t most : {1U, 2U, 50U, 700U, 900U}) {
+    EXPECT_LE(settle(network, 0.0, most).steps, most + 1) << most;
+  }
+  const Settled enough = settle(network, 1e-9, whole.steps);
+  EXPECT_EQ(enough.steps, whole.steps);
+  EXPECT_EQ(enough.position, whole.position);
+}
+
 TEST(Settle, LeavesOutWhatConditionsAskFor) {
   NetworkDescription network = chain(2, false);
   network.mats[1].position = Vec3(0, -kRest, 0);

@@ -208,6 +208,25 @@ TEST_F(StartState, OfAnyStepIsReadAtOnce) {
   EXPECT_EQ(later.steps_of_tick(), 44);
 }
 
+TEST_F(StartState, OfManyMatsIsReadBack) {
+  std::string places;
+  for (int i = 0; i < 100'000; ++i) places += "[0," + std::to_string(i) + ",0],";
+  const auto fallen = [&](const std::string& name, const std::string& keys) {
+    return write(name,
+                 "cordis: 1\nname: dust\nspace: 3\nstep: {rate_hz: 1000}\n" + keys +
+                     "matter: {dust: {kind: points, mass_kg: 1, velocity_m_per_s: [0.1, 0, 1], "
+                     "at_m: [" +
+                     places + "]}}\n");
+  };
+  const std::string text = saved_after(fallen("whole.yaml", ""), 1);
+  ASSERT_GT(text.size(), std::size_t{16} << 20);
+  write("run.state", text);
+
+  const Simulation later(planned(fallen("later.yaml", "start_state: run.state\n")), 1);
+
+  EXPECT_TRUE(state_file_text(later.scene(), later.world().snapshot()) == text);
+}
+
 TEST_F(StartState, IsWhereASceneWithOtherParametersGoesOn) {
   for (const std::string reduce : {"", "reduce: [parallel]\n"}) {
     write("run.state", saved_after(springs("whole.yaml", reduce), 20));
