@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "cli/exit_code.h"
 #include "cli/shipped_text.h"
@@ -36,13 +37,18 @@ std::filesystem::path file_of(const std::string& word) {
                    "'");
 }
 
-std::string replaced(std::string text, const Words& words) {
-  for (const auto& [word, value] : words) {
-    for (std::size_t i = text.find(word); i != std::string::npos;
-         i = text.find(word, i + value.size()))
-      text.replace(i, word.size(), value);
+/// Replaces each word where it stands in the text, and none in what has replaced another.
+std::string replaced(std::string_view text, const Words& words) {
+  std::string result;
+  while (!text.empty()) {
+    const auto found = std::ranges::find_if(
+        words, [text](const auto& entry) { return text.starts_with(entry.first); });
+    const bool is_word = found != words.end();
+    const std::size_t length = is_word ? found->first.size() : 1;
+    result += is_word ? std::string_view(found->second) : text.substr(0, 1);
+    text.remove_prefix(length);
   }
-  return text;
+  return result;
 }
 
 /// Writes the beginning of a file that is not there yet. @throws UsageError when it is
@@ -50,7 +56,7 @@ void write_new(const std::string& sort, const std::filesystem::path& file, Words
   words["TITLE"] = file.stem().string();
   words["NAME.yaml"] = file.string();
   const std::string text = "# yaml-language-server: $schema=" + schema_file(sort).string() + "\n" +
-                           replaced(std::string(shipped_text("start_" + sort + ".yaml")), words);
+                           replaced(shipped_text("start_" + sort + ".yaml"), words);
   std::FILE* const stream = std::fopen(file.c_str(), "wx");
   if (stream == nullptr) {
     const std::string reason =

@@ -77,6 +77,20 @@ TEST_F(Beginnings, NameTheirSchemaInTheFirstLine) {
   }
 }
 
+TEST_F(Beginnings, KeepTheirNameWhateverItHolds) {
+  for (const std::string name : {"MY_SCENE", "DEVICE_SCENE", "TITLE_2", "A-TITLE-SCENE-NAME"}) {
+    ASSERT_EQ(run({"new", "launch", folder_ / name}), kSuccess) << error_;
+    const std::string text = text_of(folder_ / (name + ".yaml"));
+
+    EXPECT_NE(text.find("session: " + name + "\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("scene: " + name + "_scene.yaml}"), std::string::npos) << text;
+    EXPECT_NE(text.find("device: " + name + "_device.yaml}"), std::string::npos) << text;
+    EXPECT_NE(text.find("cordis run " + (folder_ / (name + ".yaml")).string() + "\n"),
+              std::string::npos)
+        << text;
+  }
+}
+
 TEST_F(Beginnings, NeverOverwriteAFile) {
   const std::filesystem::path scene = folder_ / "mine.yaml";
   std::ofstream(scene) << "mine\n";

@@ -89,6 +89,11 @@ TEST(Slope, IsInUncertaintyOfWhatPullsThereUnlessItsOwnEndsDecideWhenItStops) {
       {engine::Operation::kQuantity, engine::Quantity::kElongation, 0.0, 0}};
   EXPECT_EQ(largest_slope(stops, -0.02, 2, Reach{0.3}).uncertainty, nullptr);
 
+  for (const engine::Quantity blind : {engine::Quantity::kAge, engine::Quantity::kImpulse}) {
+    stops.exits[0].when.code = {{engine::Operation::kQuantity, blind, 0.0, 0}};
+    EXPECT_NE(largest_slope(stops, -0.02, 2, Reach{0.3}).uncertainty, nullptr);
+  }
+
   stops.exits[0].when.code = {{engine::Operation::kVariable, {}, 0.0, 0}};
   EXPECT_NE(largest_slope(stops, -0.02, 2, Reach{0.3}).uncertainty, nullptr);
 }

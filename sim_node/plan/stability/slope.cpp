@@ -277,6 +277,20 @@ double energy_brought(const engine::NetworkDescription& network) {
   return energy + weight * extent_of(network);
 }
 
+/// True if an exit of a state asks where the ends of the link are or what they do, and none for anything
+/// else: its age and its impulse say nothing of that, and other variables may hold it anywhere.
+bool ends_by_its_own_motion(const engine::StateMachine& state_machine, std::size_t state) {
+  if (asks_for_variable(state_machine)) return false;
+  const auto first = state_machine.exits.begin() + state_machine.states[state].first_exit;
+  const auto last = state_machine.exits.begin() + state_machine.states[state].last_exit;
+  return std::any_of(first, last, [](const engine::Transition& exit) {
+    return std::ranges::any_of(exit.when.code, [](const engine::Instruction& each) {
+      return each.operation == engine::Operation::kQuantity &&
+             each.quantity != engine::Quantity::kAge && each.quantity != engine::Quantity::kImpulse;
+    });
+  });
+}
+
 }  // namespace
 
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
@@ -327,10 +341,9 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
     largest.bounded = largest.bounded && slope.bounded;
-    // Each of several states holds only where its exits let it: its slope beyond is no uncertainty. What
-    // another variable decides may hold anywhere.
-    const bool may_end = !state_machine.is_stateless() && !asks_for_variable(state_machine) &&
-                         slope.uncertainty == kPullsWhereEndsMeet;
+    // Such a state holds only where its exits let it: its slope beyond is no uncertainty.
+    const bool may_end =
+        ends_by_its_own_motion(state_machine, s) && slope.uncertainty == kPullsWhereEndsMeet;
     if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }
   return largest;
