@@ -16,7 +16,7 @@ matter:
 )";
 }
 
-scene::Scene settled(const std::string& text, config::Problems& problems) {
+scene::Scene scene_at_rest(const std::string& text, config::Problems& problems) {
   scene::Scene scene = scene::load_scene_text(text, "t", problems);
   if (!problems.has_errors()) settle(scene, problems);
   return scene;
@@ -24,7 +24,7 @@ scene::Scene settled(const std::string& text, config::Problems& problems) {
 
 TEST(Settling, MovesTheStartOfTheScene) {
   config::Problems problems;
-  const scene::Scene scene = settled(chain("settle: {until_n: 1.0e-9}"), problems);
+  const scene::Scene scene = scene_at_rest(chain("settle: {until_n: 1.0e-9}"), problems);
 
   ASSERT_EQ(problems.text(), "");
   // the four links carry 4, 3, 2 and 1 weights of 0.1 N
@@ -40,7 +40,7 @@ TEST(Settling, MovesTheStartOfTheScene) {
 
 TEST(Settling, IsNothingUnlessAsked) {
   config::Problems problems;
-  const scene::Scene scene = settled(chain(""), problems);
+  const scene::Scene scene = scene_at_rest(chain(""), problems);
 
   EXPECT_EQ(problems.text(), "");
   EXPECT_DOUBLE_EQ(scene.network.mats[4].position.y(), -0.4);
@@ -49,7 +49,7 @@ TEST(Settling, IsNothingUnlessAsked) {
 
 TEST(Settling, RefusesWhatDoesNotComeToRest) {
   config::Problems problems;
-  settled(chain("settle: {until_n: 1.0e-9, steps: 50}", "free"), problems);
+  scene_at_rest(chain("settle: {until_n: 1.0e-9, steps: 50}", "free"), problems);
 
   EXPECT_EQ(problems.text(),
             "t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]\n"
@@ -60,7 +60,7 @@ TEST(Settling, RefusesWhatDoesNotComeToRest) {
 
 TEST(Settling, ReadsItsKeys) {
   config::Problems problems;
-  settled(chain("settle: {until_n: 0, steps: 0, until: 3}"), problems);
+  scene_at_rest(chain("settle: {until_n: 0, steps: 0, until: 3}"), problems);
 
   EXPECT_NE(problems.text().find("t:4:19: error: 'until_n' in settle must be > 0, got 0"),
             std::string::npos)
