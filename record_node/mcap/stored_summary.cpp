@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "record_node/mcap/chunk_contents.h"
@@ -63,29 +62,27 @@ std::optional<std::uint64_t> indexed_count(const std::vector<ChunkIndex>& chunks
 /// True if the summary says where all its messages are. None may stand outside the chunks.
 bool is_complete(const Summary& summary) {
   const Statistics& statistics = summary.statistics;
-  std::set<std::uint64_t> offsets;
-  for (const ChunkIndex& chunk : summary.chunks) offsets.insert(chunk.offset);
   for (const auto& [id, channel] : summary.channels) {
     if (channel.schema_id != 0 && !summary.schemas.contains(channel.schema_id)) return false;
   }
   const auto indexed = indexed_count(summary.chunks);
   if (indexed && *indexed < statistics.message_count) return false;
-  return offsets.size() == summary.chunks.size() &&
-         statistics.chunk_count == summary.chunks.size() &&
+  return statistics.chunk_count == summary.chunks.size() &&
          (statistics.message_count == 0 || !summary.chunks.empty()) &&
          statistics.channel_count == summary.channels.size() &&
          statistics.attachment_count == summary.attachments.size() &&
          statistics.metadata_count == summary.metadata.size();
 }
 
-/// True if the chunks stand one behind the other, each in its place, before `end`.
+/// True if the chunks stand one behind the other, each in a place of its own, before `end`.
 bool have_room(std::vector<ChunkIndex> chunks, std::uint64_t end) {
   std::ranges::sort(chunks, {}, &ChunkIndex::offset);
   std::uint64_t place = kMagic.size();  // where the record before ends
   for (const ChunkIndex& chunk : chunks) {
     const bool follows =
         chunk.offset == place || (chunk.offset > place && chunk.offset - place >= kRecordHead);
-    if (!follows || chunk.offset > end || chunk.length > end - chunk.offset) return false;
+    if (!follows || chunk.length < kRecordHead) return false;
+    if (chunk.offset > end || chunk.length > end - chunk.offset) return false;
     place = chunk.offset + chunk.length;
   }
   return true;
