@@ -60,7 +60,7 @@ void write_new(const std::string& sort, const std::filesystem::path& file, Words
   std::FILE* const stream = std::fopen(file.c_str(), "wx");
   if (stream == nullptr) {
     const std::string reason =
-        errno == EEXIST ? "it is there already, and is never overwritten" : std::strerror(errno);
+        errno == EEXIST ? "it already exists, and is never overwritten" : std::strerror(errno);
     throw UsageError("cannot write " + file.string() + ": " + reason);
   }
   const bool whole = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
@@ -97,7 +97,7 @@ void add_new_verb(CommandLine& line) {
       "A launch file comes with the scene and the device of its nodes, NAME_scene.yaml and\n"
       "NAME_device.yaml, where those are not there yet. The first line of each file names its "
       "schema\n"
-      "for editors (`cordis schema`). A file that is there already is never overwritten.\n\n"
+      "for editors (`cordis schema`). An existing file is never overwritten.\n\n"
       "Examples:\n"
       "  cordis new launch first\n"
       "  cordis new scene second\n");

@@ -97,7 +97,7 @@ TEST_F(Beginnings, NeverOverwriteAFile) {
 
   EXPECT_EQ(run({"new", "scene", folder_ / "mine"}), kBadInput);
 
-  EXPECT_NE(error_.find("mine.yaml: it is there already, and is never overwritten"),
+  EXPECT_NE(error_.find("mine.yaml: it already exists, and is never overwritten"),
             std::string::npos)
       << error_;
   EXPECT_EQ(text_of(scene), "mine\n");
