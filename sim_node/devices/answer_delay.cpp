@@ -122,8 +122,10 @@ void AnswerDelays::record(std::uint64_t epoch, const Report& report,
   const double min_s = std::max(std::min(delay_s, before.delay_s), kFastestAnswer);
   for (std::uint64_t i = 0; i <= lost; ++i) {
     const double ago_s = static_cast<double>(i) * period_s;
-    if (!is_new && process.waited_s - ago_s > given_up_s) continue;
     const double then_s = delay_s + process.waited_s - ago_s;
+    // Since when the force of the answer before was on the motors, at a lost sample.
+    const double held_s = !is_new ? process.waited_s - ago_s : i == 0 ? 0.0 : then_s - min_s;
+    if (held_s > given_up_s) continue;
     process.delays.record(i == 0 ? then_s : std::max(then_s, min_s));
   }
 }

@@ -124,6 +124,37 @@ TEST(AnswerDelays, CountABurstOfTenLostSamplesAsTen) {
   EXPECT_LE(measured.at(kSecondNsec).value(), 7e-3);
 }
 
+/// The scene stands still for so long, takes the newest sample then, and answers at once again.
+void stall(Measured& measured, double stall_s) {
+  measured.lose(static_cast<int>(1000.0 * stall_s) - 1);
+  measured.answer(stall_s);
+}
+
+TEST(AnswerDelays, CountAStallOfTheSceneAsOneLateAnswer) {
+  std::mt19937_64 random(17);
+  for (int round = 0; round < test::rounds(100); ++round) {
+    const double stall_s = std::uniform_real_distribution<double>(0.05, 1.0)(random);
+    Measured measured;
+    measured.answer(1.5e-4, std::uniform_int_distribution<int>(1, 50)(random));
+    stall(measured, stall_s);
+    measured.answer(1.5e-4, 1000);
+    const double at_start_s = measured.at(kSecondNsec).value();
+    // Up to 20 ms the force before was on the motors.
+    EXPECT_LE(at_start_s, 1.5e-4 + (stall_s + 0.5 * 0.0205 * 21.0) / 1000.0) << stall_s;
+    EXPECT_GE(at_start_s, 1.5e-4 + stall_s / 1100.0) << stall_s;
+  }
+}
+
+TEST(AnswerDelays, AreNotShortenedByLostSamplesOfASlowLink) {
+  Measured measured;
+  for (int i = 0; i < 200; ++i) {
+    measured.answer(0.05, 10);
+    measured.lose(10);
+    measured.answer(0.06);
+  }
+  EXPECT_GE(measured.at(kSecondNsec).value(), 0.059);
+}
+
 TEST(AnswerDelays, CountAPeriodMoreForEverySampleThatIsLostWithoutANewAnswer) {
   Measured measured;
   for (int i = 0; i < 500; ++i) {
