@@ -52,7 +52,7 @@ class AnswerDelayHistogram {
 /// when it went to the motors. Samples without a new answer leave the force of the answer before on
 /// the motors: a period more counts for each of them, until the force is kGivenUp old and the
 /// device has taken it off. A sample that is lost on its way counts as one that was a period younger
-/// than the next, unless the force was off by then: a process that stands still for a while loses
+/// than the next, unless the force was off by then: a process that stalls for a while loses
 /// many samples and delays one answer. No report is believed that is shorter than the time in which this process had the
 /// sample before it answered it: that is measured here.
 class AnswerDelays {

@@ -124,7 +124,7 @@ TEST(AnswerDelays, CountABurstOfTenLostSamplesAsTen) {
   EXPECT_LE(measured.at(kSecondNsec).value(), 7e-3);
 }
 
-/// The scene stands still for so long, takes the newest sample then, and answers at once again.
+/// The scene stalls for so long, takes the newest sample then, and answers at once again.
 void stall(Measured& measured, double stall_s) {
   measured.lose(static_cast<int>(1000.0 * stall_s) - 1);
   measured.answer(stall_s);
