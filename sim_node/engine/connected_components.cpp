@@ -125,16 +125,22 @@ std::size_t ConnectedComponents::find_bound(std::span<const BoundPair> pairs) no
 
 std::size_t ConnectedComponents::find_bound(const World& world, std::size_t set) noexcept {
   begin();
+  join_bound(world, set);
+  return number_pieces();
+}
+
+void ConnectedComponents::join_bound(const World& world, std::size_t set) noexcept {
   const VisitBoundPair add = [](void* owner, const BoundPair& pair) {
     static_cast<ConnectedComponents*>(owner)->join(pair);
   };
   world.visit_bound_pairs(set, add, this);
-  return number_pieces();
 }
 
-std::size_t ConnectedComponents::find_linked(const World& world,
+std::size_t ConnectedComponents::find_joined(const World& world,
+                                             std::span<const std::uint32_t> sets,
                                              std::span<const std::uint32_t> state_links) noexcept {
   begin();
+  for (const std::uint32_t set : sets) join_bound(world, set);
   const std::vector<StateLink>& links = world.network().description().state_links;
   for (const std::uint32_t link : state_links) {
     CORDIS_ASSERT(link < links.size());

@@ -46,10 +46,11 @@ class ConnectedComponents {
   /// Finds the pieces by the bound pairs of a set of a world. Precondition: the set exists.
   std::size_t find_bound(const World& world, std::size_t set) noexcept;
 
-  /// Finds the pieces of members joined by those of these links with states that are not idle in
-  /// their present state. Real time: O(members + links), no allocation. Precondition: the links
-  /// exist. @return how many
-  std::size_t find_linked(const World& world, std::span<const std::uint32_t> state_links) noexcept;
+  /// Finds the pieces of members joined by bound pairs of these sets, and by those of these links with
+  /// states that are not idle in their present state. Real time: O(members + pairs + links), no
+  /// allocation. Precondition: sets and links exist. @return how many
+  std::size_t find_joined(const World& world, std::span<const std::uint32_t> sets,
+                          std::span<const std::uint32_t> state_links) noexcept;
 
   /// Number of the piece of a member as last found, from 0 in the order of their first members.
   std::uint32_t piece_of(std::size_t member) const noexcept {
@@ -65,6 +66,7 @@ class ConnectedComponents {
   void begin() noexcept;
   void join_kept(double distance) noexcept;
   void join_found(double distance) noexcept;
+  void join_bound(const World& world, std::size_t set) noexcept;
   void join(const BoundPair& pair) noexcept;
   void join(std::uint32_t a, std::uint32_t b) noexcept;
   std::uint32_t root_of(std::uint32_t member) noexcept;

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include <Eigen/Geometry>
+
 #include "sim_node/engine/core/assert.h"
+#include "sim_node/engine/core/float_mode.h"
 
 namespace cordis::engine {
 
@@ -48,6 +51,84 @@ double value_of_maxwell_link(const Variable& variable, const World& world) noexc
   const MaxwellLink& link = world.network().description().maxwell_links[variable.index];
   const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
   return variable.quantity == VariableKind::kDistance ? stretch.distance : stretch.elongation_rate;
+}
+
+/// Mass, centre of mass and momentum of the masses of a group.
+struct BodyMotion {
+  double mass = 0.0;
+  Vec3 center = Vec3::Zero();
+  Vec3 momentum = Vec3::Zero();
+};
+
+template <class Visit>
+void visit_masses(const VariableGroup& group, const World& world, Visit visit) noexcept {
+  const std::vector<Mat>& mats = world.network().description().mats;
+  for (const std::uint32_t mat : group.members) {
+    if (mats[mat].kind == MatKind::kMass) visit(mats[mat].mass, mat);
+  }
+}
+
+BodyMotion motion_of(const VariableGroup& group, const World& world) noexcept {
+  BodyMotion body;
+  visit_masses(group, world, [&](double mass, std::uint32_t mat) {
+    body.mass += mass;
+    body.center += mass * world.position(mat);
+    body.momentum += mass * world.velocity(mat);
+  });
+  body.center /= body.mass;
+  return body;
+}
+
+/// Sum of m (x - p) x (v - V), with V the velocity of the centre of mass where it is p, else 0.
+Vec3 angular_momentum_of(const Variable& variable, const World& world) noexcept {
+  const VariableGroup& group = world.network().description().groups[variable.index];
+  Vec3 point = variable.point;
+  Vec3 velocity = Vec3::Zero();
+  if (!variable.is_about_point) {
+    const BodyMotion body = motion_of(group, world);
+    point = body.center;
+    velocity = body.momentum / body.mass;
+  }
+  Vec3 sum = Vec3::Zero();
+  visit_masses(group, world, [&](double mass, std::uint32_t mat) {
+    sum += mass * (world.position(mat) - point).cross(world.velocity(mat) - velocity);
+  });
+  return sum;
+}
+
+double value_of_body(const Variable& variable, const World& world) noexcept {
+  const FloatMode mode;
+  if (variable.quantity == VariableKind::kAngularMomentum) {
+    return variable.direction.dot(angular_momentum_of(variable, world));
+  }
+  const VariableGroup& group = world.network().description().groups[variable.index];
+  const BodyMotion body = motion_of(group, world);
+  return variable.quantity == VariableKind::kMomentum
+             ? variable.direction.dot(body.momentum)
+             : variable.direction.dot(body.center) - variable.offset;
+}
+
+/// Takes the values of the members of a group together.
+double value_of_many(const Variable& variable, const World& world, const Energy& energy) noexcept {
+  const FloatMode mode;
+  const std::vector<std::uint32_t>& members =
+      world.network().description().groups[variable.index].members;
+  Variable one = variable;
+  one.take = Take::kOne;
+  one.index = members.front();
+  double value = value_of(one, world, energy);
+  for (std::size_t i = 1; i < members.size(); ++i) {
+    one.index = members[i];
+    const double next = value_of(one, world, energy);
+    if (variable.take == Take::kLargest) {
+      value = std::max(value, next);
+    } else if (variable.take == Take::kSmallest) {
+      value = std::min(value, next);
+    } else {
+      value += next;
+    }
+  }
+  return variable.take == Take::kMean ? value / static_cast<double>(members.size()) : value;
 }
 
 double value_of_link(const Variable& variable, const World& world) noexcept {
@@ -98,6 +179,8 @@ double energy_of(VariableKind kind, const Energy& energy) noexcept {
 
 double value_of(const Variable& variable, const World& world, const Energy& energy) noexcept {
   CORDIS_ASSERT(!is_count(variable.quantity));
+  if (variable.take != Take::kOne) return value_of_many(variable, world, energy);
+  if (is_of_body(variable.quantity)) return value_of_body(variable, world);
   if (is_of_link(variable.quantity)) return value_of_link(variable, world);
   switch (variable.quantity) {
     case VariableKind::kPosition:
@@ -108,6 +191,8 @@ double value_of(const Variable& variable, const World& world, const Energy& ener
       return variable.direction.dot(world.link_force(variable.index));
     case VariableKind::kSpeed:
       return world.velocity(variable.index).norm();
+    case VariableKind::kContactForce:
+      return variable.direction.dot(world.contact_force(variable.index));
     case VariableKind::kTime:
       return static_cast<double>(world.step_count()) * world.network().step();
     case VariableKind::kChanges:

@@ -172,6 +172,11 @@ Vec3 World::link_force(std::uint32_t mat) const noexcept {
   return state_->mats.force(mat);
 }
 
+Vec3 World::contact_force(std::uint32_t contact) const noexcept {
+  CORDIS_ASSERT(contact < network().description().contacts.size());
+  return state_->sets.contact_force(contact);
+}
+
 const Columns& World::positions() const noexcept {
   const FloatMode mode;
   state_->scheme->show_all(*state_);

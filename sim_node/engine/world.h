@@ -72,6 +72,9 @@ class World {
   /// Sum of the forces that the links put on the MAT in the last step [N]; 0 before the first. With
   /// a freeze_tolerance that of a fixed point is whole only if it stands in kept_awake.
   Vec3 link_force(std::uint32_t mat) const noexcept;
+  /// Force [N] that the liaisons of sets have put in the last step on the first group of a contact of
+  /// groups by the second one; 0 before the first. Real time: O(sets). Precondition: it exists.
+  Vec3 contact_force(std::uint32_t contact) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N; to be asked for in each step
 
   /// True if a mass rests and is left out until something wakes it, which happens in a network

@@ -11,8 +11,32 @@ void Names::add(NameEntry entry, config::Problems& problems) {
   entry.name = full(local);
   const auto [known, is_new] = entries_.try_emplace(entry.name, entry);
   if (is_new) return;
+  if (known->second.is_of_liaison) {
+    known->second = std::move(entry);
+    return;
+  }
   problems.error(entry.place, "the name '" + local + "' is used twice",
                  "first used at line " + std::to_string(known->second.place.line));
+}
+
+void Names::add_of_liaison(NameEntry entry) {
+  entry.name = full(entry.name);
+  entry.is_of_liaison = true;
+  const auto [known, is_new] = entries_.try_emplace(entry.name, entry);
+  NameEntry& all = known->second;
+  if (is_new || !all.is_of_liaison) return;
+  all.sound = all.sound && entry.sound;
+  const bool is_beside = all.further.empty() && all.first + all.count == entry.first;
+  all.count += entry.count;
+  if (is_beside) return;
+  all.further.push_back({entry.first, entry.count});
+}
+
+std::vector<IndexRun> NameEntry::runs() const {
+  std::vector<IndexRun> runs{{first, count}};
+  for (const IndexRun& run : further) runs.front().count -= run.count;
+  runs.insert(runs.end(), further.begin(), further.end());
+  return runs;
 }
 
 const NameEntry* Names::find(const std::string& name) const noexcept {
@@ -61,16 +85,23 @@ std::vector<std::string> Names::words(bool with_links) const {
 
 std::string Names::word_of(std::uint32_t index, bool is_link) const {
   const NameEntry* nearest = nullptr;
+  std::uint32_t number = 0;  // in the nearest
   for (const auto& [name, entry] : entries_) {
-    if ((entry.kind == Named::kLinks) != is_link || index < entry.first ||
-        index - entry.first >= entry.count)
-      continue;
-    if (nearest == nullptr || entry.count <= nearest->count) nearest = &entry;  // the innermost
+    if ((entry.kind == Named::kLinks) != is_link) continue;
+    std::uint32_t before = 0;
+    for (const IndexRun& run : entry.runs()) {
+      const bool is_here = index >= run.first && index - run.first < run.count;
+      if (is_here && (nearest == nullptr || entry.count <= nearest->count)) {  // the innermost
+        nearest = &entry;
+        number = before + index - run.first;
+      }
+      before += run.count;
+    }
   }
   if (nearest == nullptr) return std::to_string(index);
   std::string word = nearest->name;
   if (word.starts_with(scope_)) word.erase(0, scope_.size());
-  return word.append("[").append(std::to_string(index - nearest->first)).append("]");
+  return word.append("[").append(std::to_string(number)).append("]");
 }
 
 }  // namespace cordis::scene

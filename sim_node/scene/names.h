@@ -14,8 +14,15 @@ namespace cordis::scene {
 /// What a name of a scene stands for.
 enum class Named : std::uint8_t { kMatter, kPort, kLinks };
 
-/// A name and the consecutive MATs or links it stands for. What belongs to a part is called
-/// part.name, and a copy of a repeated part is called part[2].
+/// Consecutive MATs or links.
+struct IndexRun {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// A name and the MATs or links it stands for: consecutive ones, but for links that have no name of
+/// their own. What belongs to a part is called part.name, and a copy of a repeated part is called
+/// part[2].
 struct NameEntry {
   std::string name;
   Named kind = Named::kMatter;
@@ -24,10 +31,14 @@ struct NameEntry {
   bool sound =
       true;  ///< false: its description has a problem, so that nothing is said about its indices
   config::Place place;
-  std::uint32_t copies = 0;  ///< of a repeated part: an index counts copies instead of MATs
+  std::uint32_t copies = 0;         ///< of a repeated part: an index counts copies instead of MATs
+  bool is_of_liaison = false;       ///< links without a name, called after their liaison
+  std::vector<IndexRun> further{};  ///< of these: those that are not beside the first; in the count
 
   std::uint32_t index_count() const noexcept { return copies == 0 ? count : copies; }
   std::uint32_t per_index() const noexcept { return copies == 0 ? 1 : count / copies; }
+  /// All it stands for, in its order.
+  std::vector<IndexRun> runs() const;
 };
 
 /// A link as a name gives it: its kind and its index among those of its kind in one word.
@@ -63,6 +74,9 @@ class Names {
 
   /// Adds a name to the present scope; one that is taken is a problem of the entry's place.
   void add(NameEntry entry, config::Problems& problems);
+  /// Adds links without a name to those of the same liaison, unless its name is taken. A name that is
+  /// given later replaces it.
+  void add_of_liaison(NameEntry entry);
 
   /// The name as it is called from outside of all parts.
   std::string full(const std::string& name) const { return scope_ + name; }

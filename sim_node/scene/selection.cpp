@@ -116,7 +116,7 @@ class Picker {
     if (segment.name == "*") {
       const std::vector<const NameEntry*> all = children(prefix);
       for (const NameEntry* child : all) {
-        if (!child->sound || !append(*child, child->first, child->count, selection)) return false;
+        if (!child->sound || !append(*child, 0, child->count, selection)) return false;
       }
       return !all.empty();
     }
@@ -127,13 +127,14 @@ class Picker {
       problems_.error(value_.place(), "'" + name + "' has no " + kind_of(*entry));
       return false;
     }
-    if (!segment.indices) return append(*entry, entry->first, entry->count, selection);
+    if (!segment.indices) return append(*entry, 0, entry->count, selection);
     if (!is_inside(*entry, name, *segment.indices)) return false;
     const std::uint32_t each = entry->per_index();
     const std::uint32_t count = segment.indices->last - segment.indices->first + 1;
-    return append(*entry, entry->first + segment.indices->first * each, count * each, selection);
+    return append(*entry, segment.indices->first * each, count * each, selection);
   }
 
+  /// @param first  of those of the entry
   bool append(const NameEntry& entry, std::uint32_t first, std::uint32_t count,
               Selection& selection) {
     if (selection.indices.empty()) selection.kind = entry.kind;
@@ -142,14 +143,24 @@ class Picker {
       problems_.error(value_.place(), what_ + " must be MATs or links, not both");
       return false;
     }
-    for (std::uint32_t index = first; index < first + count; ++index) {
-      if (!taken_.insert(index).second) {
-        const std::string word = names_.word_of(index, is_link);
-        problems_.error(value_.place(), "'" + word + "' is picked twice");
-        return false;
+    const std::uint32_t end = first + count;
+    std::uint32_t before = 0;
+    for (const IndexRun& run : entry.runs()) {
+      for (std::uint32_t i = std::max(first, before); i < std::min(end, before + run.count); ++i) {
+        if (!take_one(run.first + i - before, is_link, selection)) return false;
       }
-      selection.indices.push_back(index);
+      before += run.count;
     }
+    return true;
+  }
+
+  bool take_one(std::uint32_t index, bool is_link, Selection& selection) {
+    if (!taken_.insert(index).second) {
+      const std::string word = names_.word_of(index, is_link);
+      problems_.error(value_.place(), "'" + word + "' is picked twice");
+      return false;
+    }
+    selection.indices.push_back(index);
     return true;
   }
 

@@ -26,11 +26,15 @@ double bonds_of(std::span<const std::uint32_t> state_links, const engine::World&
   return static_cast<double>(std::ranges::count_if(state_links, holds));
 }
 
-/// The MATs that links with states join, each once.
-std::vector<std::uint32_t> ends_of(const std::vector<std::uint32_t>& state_links,
+/// The MATs that links with states and liaisons of sets join, each once.
+std::vector<std::uint32_t> ends_of(const Signal& signal,
                                    const engine::NetworkDescription& network) {
   std::vector<std::uint32_t> ends;
-  for (const std::uint32_t link : state_links) {
+  for (const std::uint32_t set : signal.sets) {
+    for (const auto* half : {&network.sets[set].set_p, &network.sets[set].set_q})
+      ends.insert(ends.end(), half->begin(), half->end());
+  }
+  for (const std::uint32_t link : signal.state_links) {
     ends.push_back(network.state_links[link].mat_a);
     ends.push_back(network.state_links[link].mat_b);
   }
@@ -46,8 +50,8 @@ SignalReader::SignalReader(std::vector<Signal> signals, const engine::NetworkDes
   for (std::size_t s = 0; s < signals_.size(); ++s) {
     const Signal& signal = signals_[s];
     if (signal.quantity != Quantity::kPieces) continue;
-    if (!signal.state_links.empty()) {
-      pieces_[s].emplace(network, ends_of(signal.state_links, network));
+    if (!signal.state_links.empty() || !signal.sets.empty()) {
+      pieces_[s].emplace(network, ends_of(signal, network));
     } else if (signal.mats.empty()) {
       pieces_[s].emplace(network, signal.index);
     } else {
@@ -79,14 +83,16 @@ double SignalReader::value_of(std::size_t index, const engine::World& world,
                               const engine::Energy& energy) const noexcept {
   const Signal& signal = signals_[index];
   if (signal.quantity == Quantity::kBonds) {
-    return signal.state_links.empty() ? bonds_in(world, signal.index)
-                                      : bonds_of(signal.state_links, world);
+    if (signal.state_links.empty() && signal.sets.empty()) return bonds_in(world, signal.index);
+    double count = bonds_of(signal.state_links, world);
+    for (const std::uint32_t set : signal.sets) count += bonds_in(world, set);
+    return count;
   }
   if (!pieces_[index]) return engine::value_of(signal, world, energy);
   engine::ConnectedComponents& pieces = *pieces_[index];
   std::size_t count = 0;
-  if (!signal.state_links.empty()) {
-    count = pieces.find_linked(world, signal.state_links);
+  if (!signal.state_links.empty() || !signal.sets.empty()) {
+    count = pieces.find_joined(world, signal.sets, signal.state_links);
   } else if (signal.near > 0.0) {
     count = pieces.find_near(world.positions(), signal.near);
   } else {

@@ -28,7 +28,7 @@ enum class SignalRate : std::uint8_t {
 /// A signal, compiled: nothing is looked up by name any more.
 struct Signal : engine::Variable {
   std::string name;
-  std::string unit;  ///< m, m/s, N, J, s, or empty
+  std::string unit;  ///< m, m/s, N, J, s, kg m/s, kg m^2/s, or empty
   SignalRate rate = SignalRate::kGesture;
   bool is_sound = false;    ///< it is a sound; then it is taken after each step
   double full_scale = 1.0;  ///< of a sound: the value, in its unit, that is the loudest
@@ -36,6 +36,9 @@ struct Signal : engine::Variable {
   std::vector<std::uint32_t> mats;  ///< whose pieces are counted; empty: of a set
   std::vector<std::uint32_t>
       state_links;  ///< whose pieces or bonds are counted; empty: of no links
+  std::vector<std::uint32_t>
+      sets;  ///< several liaisons whose pieces or bonds are counted together,
+             ///< and with those of the links; empty: of one set, or of none
 };
 
 /// Evaluates the signals of a scene.
@@ -50,7 +53,8 @@ class SignalReader {
 
   /// The values of all signals in their order.
   /// Real time: no allocation; O(signals), and O(MATs + links) more when an energy is among them,
-  /// O(MATs + pairs) for each that counts pieces or bonds. Not from two threads at once.
+  /// O(members) for each of a group, O(MATs + pairs) for each that counts pieces or bonds. Not from two
+  /// threads at once.
   /// @param world   of the network the signals were compiled for
   /// @param values  room for count() values
   void read(const engine::World& world, double* values) const noexcept;

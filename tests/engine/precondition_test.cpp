@@ -64,7 +64,7 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"mat_count", [&] { world.link_force(2); }},
       {"sets", [&] { world.bound_pairs(0); }},
       {"state_links", [&] { is_idle(world, 1); }},
-      {"links", [&] { components.find_linked(world, no_such_link); }},
+      {"links", [&] { components.find_joined(world, {}, no_such_link); }},
       {"states.size", [&] { table.replace(0, of_three_states); }},
       {"state_machines", [&] { table.replace(1, of_three_states); }},
       {"isfinite", [&] { grid.around(nowhere, 0); }},

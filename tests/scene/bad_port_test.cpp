@@ -111,14 +111,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "the quantity 'speed' has no axis", ""},
         BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: ^elongation}\n",
                  "a MAT has no quantity 'elongation'",
-                 "it has position, velocity, force, speed, pieces"},
+                 "it has position, velocity, force, speed, pieces, center_of_mass, momentum, "
+                 "angular_momentum, contact_force"},
         BadScene{kLinked, "signals:\n  s: {quantity: ^elongation}\n",
                  "the scene has no quantity 'elongation'", "say whose it is: of: name[3]"},
         BadScene{kLinked, "signals:\n  s: {quantity: ^heat}\n", "the scene has no quantity 'heat'",
                  "it has changes, awake, energy, kinetic_energy, elastic_energy, gravity_energy, "
                  "dissipated_energy, port_work, switching_energy"},
         BadScene{kLinked, "signals:\n  s: {of: ^a, quantity: position, axis: x}\n",
-                 "a signal is of one MAT or one link, and 'a' has 3", "pick one: a[0]"},
+                 "a signal is of one MAT or one link, and 'a' has 3",
+                 "pick one: a[0], or take: largest, smallest, mean or sum"},
         BadScene{kLinked, "signals:\n  s: {of: ^aa, quantity: position, axis: x}\n",
                  "no matter, port or links are named 'aa'", ""},
         BadScene{kLinked, "signals:\n  s: {of: ^\"a.links[0]\", quantity: position}\n",

@@ -115,7 +115,7 @@ ports:
 signals:
   place: {of: one, quantity: position, rate: step, sound: true, full_scale: 1}
   energy: {quantity: energy}
-  stretch: {of: held, quantity: elongation}
+  stretch: {of: held, quantity: elongation, take: mean}
 )";
 
 constexpr const char* kSceneOfPlane = R"(cordis: 1
@@ -158,6 +158,8 @@ ports:
 signals:
   pile: {of: heap, quantity: pieces, near_m: 0.1}
   force: {of: hand, quantity: force, axis: y}
+  landing: {of: heap, by: floor, quantity: contact_force, axis: y}
+  spin: {of: heap, quantity: angular_momentum, about_m: [0, 0]}
 )";
 
 constexpr const char* kSceneOfSpace = R"(cordis: 1

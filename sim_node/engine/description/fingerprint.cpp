@@ -1,6 +1,7 @@
 // sim_node/engine/description/fingerprint.cpp
 #include "sim_node/engine/description/fingerprint.h"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -126,6 +127,13 @@ class Fingerprint {
     add(static_cast<std::uint64_t>(variable.kind));
     add(variable.direction);
     add(variable.offset);
+    if (variable.take != Take::kOne) add(static_cast<std::uint64_t>(variable.take));
+    if (variable.is_about_point) add(variable.point);
+  }
+  void add(const VariableGroup& group) { add_all(group.members); }
+  void add(const ContactOfGroups& contact) {
+    add(contact.on);
+    add(contact.by);
   }
   template <class Items>
   void add_all(const Items& items) {
@@ -189,6 +197,11 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   fingerprint.add_if_any(9, description.time_functions);
   fingerprint.add_if_any(10, description.drives);
   fingerprint.add_if_any(11, description.variables);
+  fingerprint.add_if_any(12, description.contacts);  // whose forces a state has
+  const auto is_of_many = [](const Variable& variable) { return is_of_group(variable); };
+  if (!description.contacts.empty() || std::ranges::any_of(description.variables, is_of_many)) {
+    fingerprint.add_if_any(13, description.groups);
+  }
   if (description.freeze_tolerance > 0.0) {
     fingerprint.add(std::uint64_t{7});
     fingerprint.add(description.freeze_tolerance);

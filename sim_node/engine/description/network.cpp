@@ -163,23 +163,75 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   check_surfaces_of(description, set, name);
 }
 
+void check_group(const NetworkDescription& description, const VariableGroup& group,
+                 const std::string& name) {
+  std::size_t count = description.mats.size();
+  if (group.is_of_links) {
+    count = group.kind == LinkKind::kLinear  ? description.links.size()
+            : group.kind == LinkKind::kState ? description.state_links.size()
+                                             : description.maxwell_links.size();
+  }
+  require(!group.members.empty(), name, "one of at least 1 member");
+  std::vector<bool> taken(count, false);
+  for (const std::uint32_t member : group.members) {
+    require(member < count && !taken[member], name + ": each member", "in the network, once");
+    taken[member] = true;
+  }
+}
+
+void check_contact(const NetworkDescription& description, const ContactOfGroups& contact,
+                   const std::string& name) {
+  std::vector<bool> taken(description.mats.size(), false);
+  for (const std::uint32_t index : {contact.on, contact.by}) {
+    const bool is_of_mats =
+        index < description.groups.size() && !description.groups[index].is_of_links;
+    require(is_of_mats, name + ": each of its groups", "one of MATs");
+    for (const std::uint32_t mat : description.groups[index].members) {
+      require(!taken[mat], name + ": MAT " + std::to_string(mat), "in one of its groups");
+      taken[mat] = true;
+    }
+  }
+}
+
+/// Precondition: the group exists.
+void check_group_of(const NetworkDescription& description, const Variable& variable,
+                    const std::string& name) {
+  const VariableGroup& group = description.groups[variable.index];
+  const bool fits = group.is_of_links ? is_of_link(variable.quantity) && group.kind == variable.kind
+                                      : !is_of_link(variable.quantity);
+  require(fits, name + ": its group", "one of what it measures");
+  if (!is_of_body(variable.quantity)) return;
+  const auto is_mass = [&](std::uint32_t mat) {
+    return description.mats[mat].kind == MatKind::kMass;
+  };
+  require(variable.take == Take::kOne && std::ranges::any_of(group.members, is_mass),
+          name + ": its group", "one with a mass");
+}
+
 void check_variable(const NetworkDescription& description, const Variable& variable,
                     const std::string& name) {
   const auto list_size = [&] {
+    if (is_of_group(variable)) return description.groups.size();
+    if (variable.quantity == VariableKind::kContactForce) return description.contacts.size();
     if (is_of_mat(variable.quantity)) return description.mats.size();
     if (variable.kind == LinkKind::kLinear) return description.links.size();
     return variable.kind == LinkKind::kState ? description.state_links.size()
                                              : description.maxwell_links.size();
   };
   require(!is_count(variable.quantity), name + ": quantity", "no count of pieces or bonds");
-  if (is_of_mat(variable.quantity) || is_of_link(variable.quantity)) {
+  const bool is_of_something = is_of_mat(variable.quantity) || is_of_link(variable.quantity) ||
+                               variable.quantity >= VariableKind::kCenterOfMass;
+  require(is_of_something || variable.take == Take::kOne, name + ": quantity", "one of members");
+  if (is_of_something) {
     require(variable.index < list_size(), name + ": what it is of", "in the network");
   }
+  if (is_of_group(variable)) check_group_of(description, variable, name);
   if (is_of_link(variable.quantity) && variable.quantity >= VariableKind::kState) {
     require(variable.kind == LinkKind::kState, name + ": its link", "one with states");
   }
   require(variable.direction.allFinite(), name + ": direction", "finite");
   require(std::isfinite(variable.offset), name + ": offset", "finite");
+  require(variable.point.allFinite(), name + ": point", "finite");
 }
 
 template <class Item, class Check>
@@ -234,6 +286,8 @@ void check(const NetworkDescription& description) {
   check_each(description, description.surfaces, "surface", check_surface);
   check_each(description, description.sets, "set", check_set);
   check_drives(description);
+  check_each(description, description.groups, "group", check_group);
+  check_each(description, description.contacts, "contact", check_contact);
   check_each(description, description.variables, "variable", check_variable);
   require(is_finite_and_at_least_zero(description.freeze_tolerance), "tolerance of freezing",
           "finite and >= 0");

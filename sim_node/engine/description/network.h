@@ -111,7 +111,9 @@ struct NetworkDescription {
   std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
   std::vector<TimeFunction> time_functions;
   std::vector<Drive> drives;  ///< in the order of their MATs; of a position one each, forces add up
-  std::vector<Variable> variables;  ///< that conditions ask for: Operation::kVariable
+  std::vector<Variable> variables;        ///< that conditions ask for: Operation::kVariable
+  std::vector<VariableGroup> groups;      ///< what variables take together
+  std::vector<ContactOfGroups> contacts;  ///< whose forces are added up in each step
 
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;

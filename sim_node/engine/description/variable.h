@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sim_node/engine/core/vec.h"
 
@@ -10,8 +11,8 @@ namespace cordis::engine {
 /// The kinds of links between two MATs.
 enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell };
 
-/// What a variable measures. The first group is of a MAT, the second of a link, the third of a set, the
-/// last three of the scene.
+/// What a variable measures. The first block is of a MAT, the second of a link, the third of a set, the
+/// next two of the scene, the last of a group of MATs.
 enum class VariableKind : std::uint8_t {
   kPosition,  ///< of a MAT along a direction [m]
   kVelocity,  ///< of a MAT along a direction, over the last step [m/s]
@@ -41,12 +42,22 @@ enum class VariableKind : std::uint8_t {
   kGravityEnergy,     ///< [J]
   kDissipatedEnergy,  ///< taken by viscosity since step 0 [J]
   kPortWork,          ///< brought in through the ports since step 0 [J]
-  kSwitchingEnergy    ///< brought in by changes of state since step 0 [J]
+  kSwitchingEnergy,   ///< brought in by changes of state since step 0 [J]
+
+  kCenterOfMass,  ///< of the masses of a group along a direction [m]
+  kMomentum,      ///< of the masses of a group along a direction [kg m/s]
+  kAngularMomentum,  ///< of the masses of a group about an axis through their centre of mass, or through
+                     ///< a point [kg m^2/s]
+  kContactForce  ///< on a group by another one along a direction: of their liaisons of sets, in the last
+                 ///< step [N]
 };
+
+/// What a variable of many MATs or links takes of their values.
+enum class Take : std::uint8_t { kOne, kLargest, kSmallest, kMean, kSum };
 
 /// True for a variable of a MAT along a direction.
 constexpr bool has_direction(VariableKind kind) noexcept {
-  return kind <= VariableKind::kForce;
+  return kind <= VariableKind::kForce || kind >= VariableKind::kCenterOfMass;
 }
 constexpr bool is_of_mat(VariableKind kind) noexcept {
   return kind <= VariableKind::kSpeed;
@@ -58,21 +69,57 @@ constexpr bool is_count(VariableKind kind) noexcept {
   return kind == VariableKind::kPieces || kind == VariableKind::kBonds;
 }
 constexpr bool is_energy(VariableKind kind) noexcept {
-  return kind >= VariableKind::kEnergy;
+  return kind >= VariableKind::kEnergy && kind <= VariableKind::kSwitchingEnergy;
 }
+/// True for a variable of the masses of a group as one body.
+constexpr bool is_of_body(VariableKind kind) noexcept {
+  return kind >= VariableKind::kCenterOfMass && kind <= VariableKind::kAngularMomentum;
+}
+
+/// MATs, or links of one kind, that a variable takes together: sums go through them in their order.
+struct VariableGroup {
+  bool is_of_links = false;
+  LinkKind kind = LinkKind::kLinear;   ///< of the links
+  std::vector<std::uint32_t> members;  ///< each once
+};
+
+/// Two groups of MATs without a MAT in common whose contact force is asked for.
+struct ContactOfGroups {
+  std::uint32_t on = 0;  ///< index in NetworkDescription::groups
+  std::uint32_t by = 0;  ///< likewise
+};
 
 /// One scalar of a network in motion. The conditions of links may ask for it.
 struct Variable {
   VariableKind quantity = VariableKind::kEnergy;
-  std::uint32_t index = 0;            ///< of the MAT, of the link in its kind, or of the set
+  std::uint32_t index =
+      0;  ///< of the MAT, of the link in its kind, of the set, of the group, or of
+          ///< the contact of groups
   LinkKind kind = LinkKind::kLinear;  ///< of the link
   Vec3 direction = Vec3::Zero();      ///< of a MAT's quantity, unit length
   double offset = 0.0;                ///< subtracted from a position [m]: a port's rest
+  Take take = Take::kOne;             ///< another one: of the members of a group
+  bool is_about_point = false;        ///< an angular momentum: about a point of the scene
+  Vec3 point = Vec3::Zero();          ///< that point [m]
 
   friend bool operator==(const Variable& a, const Variable& b) noexcept {
     return a.quantity == b.quantity && a.index == b.index && a.kind == b.kind &&
-           a.direction == b.direction && a.offset == b.offset;
+           a.direction == b.direction && a.offset == b.offset && a.take == b.take &&
+           a.is_about_point == b.is_about_point && a.point == b.point;
   }
 };
+
+/// True if the index is that of a group.
+constexpr bool is_of_group(const Variable& variable) noexcept {
+  return variable.take != Take::kOne || is_of_body(variable.quantity);
+}
+/// True if the index is that of a MAT.
+constexpr bool is_of_one_mat(const Variable& variable) noexcept {
+  return variable.take == Take::kOne && is_of_mat(variable.quantity);
+}
+/// True if the index is that of a link.
+constexpr bool is_of_one_link(const Variable& variable) noexcept {
+  return variable.take == Take::kOne && is_of_link(variable.quantity);
+}
 
 }  // namespace cordis::engine

@@ -57,6 +57,12 @@ double SetLiaisons::stored_energy(const StateTable& table) noexcept {
   return sum;
 }
 
+Vec3 SetLiaisons::contact_force(std::uint32_t contact) const noexcept {
+  Vec3 sum = Vec3::Zero();
+  for (const SetPairs& set : sets_) sum += set.contact_force(contact);
+  return sum;
+}
+
 void SetLiaisons::start() noexcept {
   for (SetPairs& set : sets_) set.start();
 }

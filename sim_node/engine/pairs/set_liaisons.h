@@ -37,6 +37,7 @@ class SetLiaisons {
   void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
+  Vec3 contact_force(std::uint32_t contact) const noexcept;
   void start() noexcept;
   void adopt(const StateTable& table);
   std::uint32_t overflowed_count() const noexcept;

@@ -90,7 +90,8 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       state_machines_(description, description.sets[index], table,
                       state_capacity(description.sets[index]), block_.capacity()),
       friction_(description, description.sets[index], state_capacity(description.sets[index]),
-                block_.capacity()) {
+                block_.capacity()),
+      contacts_(description, description.sets[index]) {
   const SetLiaison& set = description.sets[index];
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
@@ -175,6 +176,7 @@ bool SetPairs::refresh() noexcept {
 
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
   clear_forces();
+  contacts_.begin_step();
   state_machines_.begin_step(step);
   if (!step.frozen) friction_.begin_step();
   if (!active_.are_all()) {
@@ -233,6 +235,7 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
   if (path_ == Path::kLennardJones) {
     block_.begin(rows.first);
     kernel_.lennard_jones_rows(lennard_jones_, members(), rows, block_.next_row(), force_.data());
+    if (!contacts_.empty() && !step.frozen) add_lennard_jones_contacts(rows);
     return;
   }
   for (std::size_t a = rows.first; a < rows.last;) {
@@ -241,6 +244,25 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
       block_.end_row(gather(step, rows, a));
     }
     step_block(step);
+  }
+}
+
+/// The kernel keeps no forces of pairs: those of a contact are found again, with the same bits.
+void SetPairs::add_lennard_jones_contacts(const NeighbourRows& rows) noexcept {
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    if (!contacts_.asks_for(a)) continue;
+    block_.begin(a);
+    const PairRow row = block_.next_row();
+    block_.end_row(
+        kernel_.gather_pairs(members(), a, rows.neighbour + (rows.start[a] - rows.origin),
+                             rows.start[a + 1] - rows.start[a], lennard_jones_.range_square, row));
+    double* const factor = block_.factor();
+    for (std::size_t i = 0; i < block_.count(); ++i) {
+      const double inverse = row.square[i] > 0.0 ? 1.0 / row.square[i] : 0.0;
+      const double sixth = inverse * inverse * inverse;
+      factor[i] = (lennard_jones_.attraction - lennard_jones_.repulsion * sixth) * sixth * inverse;
+    }
+    contacts_.add(block_.rows(), factor);
   }
 }
 
@@ -342,8 +364,10 @@ void SetPairs::step_block(const PairStep& step) noexcept {
     const FrictionRows friction = friction_.step(kernel_, members(), block_);
     kernel_.spread_vectors(rows, block_.factor(), friction, force_.data());
     kernel_.spread_vectors(rows, block_.viscous_factor(), friction, viscous_.data());
+    contacts_.add(rows, block_.factor(), &friction);
     return;
   }
+  if (!step.frozen) contacts_.add(rows, block_.factor());
   kernel_.spread_rows(rows, block_.factor(), force_.data());
   if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
 }
@@ -670,6 +694,7 @@ void SetPairs::serialize(Archive& archive, const StateTable& table) {
     state_machines_.states().serialize(archive, first_later, column_.size(), table, state_machine_);
   }
   friction_.serialize(archive, first_later, column_.size());
+  contacts_.serialize(archive);
   if (!archive.restores()) return;
   neighbours_.forget();
   surfaces_.forget();

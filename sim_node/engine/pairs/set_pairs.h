@@ -17,6 +17,7 @@
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"
 #include "sim_node/engine/pairs/active_pairs.h"
+#include "sim_node/engine/pairs/contact_forces.h"
 #include "sim_node/engine/pairs/neighbour_list.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_friction.h"
@@ -76,6 +77,9 @@ class SetPairs {
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   /// Potential energy [J] of the pairs at the positions of the last call, in closed form.
   double stored_energy(const StateTable& table) noexcept;
+
+  /// What this set has put on the first group of a contact by the second one in the last step [N].
+  Vec3 contact_force(std::uint32_t contact) const noexcept { return contacts_.force(contact); }
 
   void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
 
@@ -171,6 +175,7 @@ class SetPairs {
                      double distance, double rest_length, double& sum) const noexcept;
   void find_rest_lengths() noexcept;
   void step_block(const PairStep& step) noexcept;
+  void add_lennard_jones_contacts(const NeighbourRows& rows) noexcept;
   MemberColumns members() const noexcept;
   PairRest rest() const noexcept;
   StepEnergy work_of(std::size_t member, const double* moved) const noexcept;
@@ -197,6 +202,7 @@ class SetPairs {
   PairBlock block_;
   PairStateMachines state_machines_;
   PairFriction friction_;
+  ContactForces contacts_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches and one batch more
   AlignedVector<double> moved_;
   AlignedVector<double> ahead_;    // positions of the next step, for make_room()

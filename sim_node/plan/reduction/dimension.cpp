@@ -43,6 +43,20 @@ bool asks_for_an_axis(const engine::NetworkDescription& network) {
   return false;
 }
 
+/// True if a signal or a condition asks for such a variable.
+template <class Is>
+bool asks_for(const scene::Scene& scene, Is is) {
+  return std::ranges::any_of(scene.signals.signals(), is) ||
+         std::ranges::any_of(scene.network.variables, is);
+}
+
+/// True if something asks for an angular momentum, which has no plane or line that is left to lie in.
+bool asks_for_angular_momentum(const scene::Scene& scene) {
+  return asks_for(scene, [](const engine::Variable& variable) {
+    return variable.quantity == engine::VariableKind::kAngularMomentum;
+  });
+}
+
 /// True if the sign of the links of a line makes no difference.
 bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
@@ -53,8 +67,7 @@ bool fits_a_line(const scene::Scene& scene) {
     return variable.quantity >= engine::VariableKind::kDistance &&
            variable.quantity <= engine::VariableKind::kTension;
   };
-  if (std::ranges::any_of(scene.signals.signals(), has_sign)) return false;
-  if (std::ranges::any_of(network.variables, has_sign)) return false;
+  if (asks_for(scene, has_sign)) return false;
   // Where both ends are at one place there is no direction, and no force, but in 1 dimension.
   const auto begins_apart = [&network](const auto& link) {
     const engine::Mat& a = network.mats[link.mat_a];
@@ -102,7 +115,8 @@ void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene
     for (Vec3& direction : port.directions) direction = project(direction);
   }
   const auto project_variable = [&](engine::Variable& variable) {
-    if (variable.quantity == engine::VariableKind::kPosition) {
+    if (variable.quantity == engine::VariableKind::kPosition ||
+        variable.quantity == engine::VariableKind::kCenterOfMass) {
       variable.offset -= variable.direction.dot(subspace.origin);  // what never changes
     }
     variable.direction = project(variable.direction);
@@ -119,6 +133,7 @@ void project(const scene::Subspace& subspace, int dimension, scene::Scene& scene
 std::string confine(scene::Scene& scene) {
   if (!scene.network.surfaces.empty()) return {};  // what touches them may leave the plane
   if (!scene.network.drives.empty()) return {};    // so may what a function of time moves
+  if (asks_for_angular_momentum(scene)) return {};
   scene::Subspace subspace;
   subspace.space = scene.space();
   std::vector<int> left;

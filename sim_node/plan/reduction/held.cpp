@@ -5,8 +5,8 @@ namespace cordis::plan {
 namespace {
 
 void hold(const engine::Variable& variable, Held& held) {
-  if (is_of_mat(variable.quantity)) held.mats[variable.index] = true;
-  if (is_of_link(variable.quantity) && variable.kind == engine::LinkKind::kLinear) {
+  if (is_of_one_mat(variable)) held.mats[variable.index] = true;
+  if (is_of_one_link(variable) && variable.kind == engine::LinkKind::kLinear) {
     held.links[variable.index] = true;
   }
   if (variable.quantity == engine::VariableKind::kEnergy ||
@@ -47,6 +47,11 @@ Held held_in(const scene::Scene& scene) {
     hold(signal, held);
   }
   for (const engine::Variable& variable : network.variables) hold(variable, held);
+  for (const engine::VariableGroup& group : network.groups) {
+    if (group.is_of_links && group.kind != engine::LinkKind::kLinear) continue;
+    std::vector<bool>& kept = group.is_of_links ? held.links : held.mats;
+    for (const std::uint32_t member : group.members) kept[member] = true;
+  }
   for (std::size_t l = 0; l < network.links.size(); ++l) {
     if (!held.links[l]) continue;
     held.mats[network.links[l].mat_a] = held.mats[network.links[l].mat_b] = true;

@@ -91,12 +91,16 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
     of_mats.apply(port.tool);
   }
   const auto renumber = [&](engine::Variable& variable) {
-    if (is_of_mat(variable.quantity)) of_mats.apply(variable.index);
-    if (is_of_link(variable.quantity) && variable.kind == engine::LinkKind::kLinear) {
+    if (is_of_one_mat(variable)) of_mats.apply(variable.index);
+    if (is_of_one_link(variable) && variable.kind == engine::LinkKind::kLinear) {
       of_links.apply(variable.index);
     }
   };
   std::ranges::for_each(network.variables, renumber);
+  for (engine::VariableGroup& group : network.groups) {
+    if (!group.is_of_links) of_mats.apply(group.members);
+    if (group.is_of_links && group.kind == engine::LinkKind::kLinear) of_links.apply(group.members);
+  }
   std::vector<scene::Signal> signals = scene.signals.signals();
   for (scene::Signal& signal : signals) {
     of_mats.apply(signal.mats);

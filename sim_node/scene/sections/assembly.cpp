@@ -103,6 +103,22 @@ void Assembly::add_group(const std::string& name, LinkKind kind, const LinkCount
   scene.link_groups.push_back(std::move(group));
 }
 
+void Assembly::call_after_liaison(const std::string& name, LinkKind kind, const LinkCounts& before,
+                                  bool sound, const config::Place& place) {
+  if (name.empty()) return;  // its liaison is written in the link
+  const auto k = static_cast<std::size_t>(kind);
+  const std::uint32_t count = link_counts()[k] - before[k];
+  names.add_of_liaison({name, Named::kLinks, link_word(kind, before[k]), count, sound, place});
+}
+
+std::vector<std::uint32_t> Assembly::sets_called(const std::string& name) const {
+  const auto named = named_sets.find(names.full(name));
+  if (named != named_sets.end()) return {named->second};
+  if (names.find(name) != nullptr) return {};
+  const auto unnamed = sets_of_liaisons.find(names.full(name));
+  return unnamed == sets_of_liaisons.end() ? std::vector<std::uint32_t>{} : unnamed->second;
+}
+
 void Assembly::name_links(const std::string& name, const LinkCounts& before, bool sound,
                           const config::Place& place, const LinkLaw* law) {
   const LinkCounts after = link_counts();

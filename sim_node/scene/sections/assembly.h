@@ -76,6 +76,13 @@ struct Assembly {
   void name_links(const std::string& name, const LinkCounts& before, bool sound,
                   const config::Place& place, const LinkLaw* law);
 
+  /// Lets links without a name that have been added since there were `before` be called after their
+  /// liaison.
+  void call_after_liaison(const std::string& name, LinkKind kind, const LinkCounts& before,
+                          bool sound, const config::Place& place);
+  /// The liaisons of sets of a name: one with that name, or those without a name of a liaison so called.
+  std::vector<std::uint32_t> sets_called(const std::string& name) const;
+
   std::uint32_t mat_count() const noexcept {
     return static_cast<std::uint32_t>(scene.network.mats.size());
   }
@@ -89,6 +96,8 @@ struct Assembly {
   std::shared_ptr<Liaisons> liaisons;
   Names names;
   std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
+  std::map<std::string, std::vector<std::uint32_t>>
+      sets_of_liaisons;  ///< those without a name, by that of their liaison
   Parts parts;
   Placement placement;                  ///< of the part that is being added
   std::vector<const Part*> open_parts;  ///< from the outermost to it

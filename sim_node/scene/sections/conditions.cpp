@@ -36,8 +36,10 @@ struct ConditionWord {
 struct InOrder {
   static auto key_of(const Variable& variable) {
     const engine::Vec3& direction = variable.direction;
+    const engine::Vec3& point = variable.point;
     return std::tuple(variable.quantity, variable.kind, variable.index, direction.x(),
-                      direction.y(), direction.z(), variable.offset);
+                      direction.y(), direction.z(), variable.offset, variable.take,
+                      variable.is_about_point, point.x(), point.y(), point.z());
   }
   bool operator()(const Variable& a, const Variable& b) const { return key_of(a) < key_of(b); }
 };
@@ -105,7 +107,7 @@ class ConditionReader {
     const auto [known, is_new] = numbers_.emplace(variable, next);
     if (is_new) {
       variables.push_back(variable);
-      if (variable.quantity == engine::VariableKind::kForce)
+      if (variable.quantity == engine::VariableKind::kForce && is_of_one_mat(variable))
         assembly_.scene.network.kept_awake.push_back(variable.index);
     }
     return {Operation::kVariable, engine::Quantity::kDistance, 0.0, known->second};

@@ -111,8 +111,9 @@ void read_ends(Assembly& assembly, LinkEntry& entry) {
     const std::string name = parts.size() == 1 ? entry.name : entry.name + "." + part.part;
     if (entry.has_name) {
       assembly.name_links(name, before, joined, entry.reader.place_of("name"), &part);
-    } else if (joined) {
-      assembly.add_group(name, part.kind, before, between.place(), &part);
+    } else {
+      if (joined) assembly.add_group(name, part.kind, before, between.place(), &part);
+      assembly.call_after_liaison(name, part.kind, before, joined, between.place());
     }
     if (!joined) break;
   }

@@ -9,7 +9,7 @@ namespace {
 
 using engine::VariableKind;
 
-constexpr std::array<QuantityWord, 31> kWords{{
+constexpr std::array<QuantityWord, 35> kWords{{
     {"position", Owner::kMat, VariableKind::kPosition, "m", true},
     {"velocity", Owner::kMat, VariableKind::kVelocity, "m/s", true},
     {"force", Owner::kMat, VariableKind::kForce, "N", true},
@@ -30,6 +30,10 @@ constexpr std::array<QuantityWord, 31> kWords{{
     {"distance", Owner::kMaxwellLink, VariableKind::kDistance, "m", false},
     {"speed", Owner::kMaxwellLink, VariableKind::kElongationRate, "m/s", false},
     {"pieces", Owner::kMat, VariableKind::kPieces, "", false},
+    {"center_of_mass", Owner::kBody, VariableKind::kCenterOfMass, "m", true},
+    {"momentum", Owner::kBody, VariableKind::kMomentum, "kg m/s", true},
+    {"angular_momentum", Owner::kBody, VariableKind::kAngularMomentum, "kg m^2/s", true},
+    {"contact_force", Owner::kBody, VariableKind::kContactForce, "N", true},
     {"pieces", Owner::kSet, VariableKind::kPieces, "", false},
     {"bonds", Owner::kSet, VariableKind::kBonds, "", false},
     {"changes", Owner::kScene, VariableKind::kChanges, "", false},
@@ -61,6 +65,8 @@ const char* name_of(Owner owner) {
       return "a Maxwell element";
     case Owner::kSet:
       return "a liaison of sets";
+    case Owner::kBody:
+      return "a body";
     case Owner::kMat:
       break;
   }
@@ -77,7 +83,9 @@ const QuantityWord* find_quantity(Owner owner, const std::string& word) {
 std::string list_of_quantities(Owner owner) {
   std::string list;
   for (const QuantityWord& known : kWords) {
-    if (known.owner == owner) list.append(list.empty() ? "" : ", ").append(known.word);
+    const bool is_of_body = owner == Owner::kMat && known.owner == Owner::kBody;
+    if (known.owner == owner || is_of_body)
+      list.append(list.empty() ? "" : ", ").append(known.word);
   }
   return list;
 }

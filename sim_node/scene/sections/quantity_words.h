@@ -10,7 +10,7 @@
 namespace cordis::scene {
 
 /// Whose a variable is.
-enum class Owner { kMat, kLink, kStateLink, kMaxwellLink, kSet, kScene };
+enum class Owner { kMat, kBody, kLink, kStateLink, kMaxwellLink, kSet, kScene };
 
 /// What a scene can ask for, of whom.
 struct QuantityWord {
@@ -29,6 +29,7 @@ const char* name_of(Owner owner);
 Owner owner_of(LinkKind kind);
 /// nullptr when the owner has no such quantity.
 const QuantityWord* find_quantity(Owner owner, const std::string& word);
+/// The words of MATs include those of a body.
 std::string list_of_quantities(Owner owner);
 
 /// Gives a variable of a MAT the direction that this MAT has by itself: that of a port of one axis, whose rest

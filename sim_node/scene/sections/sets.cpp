@@ -207,9 +207,11 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                                                  *state_machine, {});
     const std::string name =
         assembly.names.full(parts.size() == 1 ? entry.name : entry.name + "." + part.part);
+    const auto number = static_cast<std::uint32_t>(assembly.scene.network.sets.size());
     if (entry.has_name) {
-      assembly.named_sets.emplace(name,
-                                  static_cast<std::uint32_t>(assembly.scene.network.sets.size()));
+      assembly.named_sets.emplace(name, number);
+    } else {
+      assembly.sets_of_liaisons[name].push_back(number);
     }
     assembly.scene.network.sets.push_back(std::move(set));
     assembly.scene.set_names.push_back(name);

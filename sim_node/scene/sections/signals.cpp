@@ -57,6 +57,133 @@ void read_rate(config::MappingReader& reader, Signal& signal) {
   }
 }
 
+/// The direction of a quantity of a group, which has none by itself but in 1-D.
+void read_direction_of_group(int space, config::MappingReader& reader, Signal& signal) {
+  signal.direction = Vec3::UnitX();
+  if (space == 1 && !reader.has("axis")) return;
+  signal.direction = Vec3::Unit(reader.required_choice("axis", axis_words(space)).front() - 'x');
+}
+
+/// @return its number in the network
+std::uint32_t add_group(Assembly& assembly, engine::VariableGroup group) {
+  std::vector<engine::VariableGroup>& groups = assembly.scene.network.groups;
+  groups.push_back(std::move(group));
+  return static_cast<std::uint32_t>(groups.size() - 1);
+}
+
+/// True if a liaison of sets acts between MATs of two groups.
+bool are_joined(const engine::NetworkDescription& network, const std::vector<std::uint32_t>& on,
+                const std::vector<std::uint32_t>& by) {
+  std::vector<bool> is_on(network.mats.size());
+  std::vector<bool> is_by(network.mats.size());
+  for (const std::uint32_t mat : on) is_on[mat] = true;
+  for (const std::uint32_t mat : by) is_by[mat] = true;
+  const auto has = [](const std::vector<std::uint32_t>& set, const std::vector<bool>& group) {
+    return std::ranges::any_of(set, [&](std::uint32_t mat) { return group[mat]; });
+  };
+  return std::ranges::any_of(network.sets, [&](const engine::SetLiaison& set) {
+    const std::vector<std::uint32_t>& other = set.set_q.empty() ? set.set_p : set.set_q;
+    return (has(set.set_p, is_on) && has(other, is_by)) ||
+           (has(set.set_p, is_by) && has(other, is_on));
+  });
+}
+
+/// Reads by which body the contact force is.
+void read_contact(Assembly& assembly, config::MappingReader& reader, const Selection& on,
+                  Signal& signal) {
+  const std::optional<Selection> by = select(reader.required_value("by"), reader.name_of("by"),
+                                             false, assembly.names, assembly.problems);
+  if (!by) return;
+  engine::NetworkDescription& network = assembly.scene.network;
+  for (const std::uint32_t mat : by->indices) {
+    if (std::ranges::find(on.indices, mat) == on.indices.end()) continue;
+    reader.error_at("by", "'" + assembly.names.word_of(mat, false) + "' is in both bodies");
+    return;
+  }
+  if (assembly.problems.has_errors()) return;  // a liaison may be missing for it
+  if (!are_joined(network, on.indices, by->indices)) {
+    reader.error_at("by", "no liaison of sets acts between these bodies",
+                    "the force of a link is its quantity force");
+    return;
+  }
+  network.kept_awake.insert(network.kept_awake.end(), on.indices.begin(), on.indices.end());
+  const std::uint32_t group = add_group(assembly, {false, LinkKind::kLinear, on.indices});
+  const std::uint32_t other = add_group(assembly, {false, LinkKind::kLinear, by->indices});
+  signal.index = static_cast<std::uint32_t>(network.contacts.size());
+  network.contacts.push_back({group, other});
+}
+
+/// Reads what the momentum of a turning body is about.
+void read_turn(int space, config::MappingReader& reader, Signal& signal) {
+  signal.is_about_point = reader.has("about_m");
+  signal.point = optional_point(reader, "about_m", Vec3::Zero(), space);
+  signal.direction = Vec3::UnitZ();
+  if (space == 1) reader.error_at("quantity", "nothing turns in 1-D");
+  if (space == 3) read_direction_of_group(space, reader, signal);
+}
+
+void read_signal_of_body(Assembly& assembly, config::MappingReader& reader, Signal signal,
+                         const Selection& picked, std::vector<Signal>& signals) {
+  const std::vector<engine::Mat>& mats = assembly.scene.network.mats;
+  const int space = assembly.scene.space();
+  const auto is_mass = [&](std::uint32_t mat) { return mats[mat].kind == engine::MatKind::kMass; };
+  const bool has_mass = std::ranges::any_of(picked.indices, is_mass);
+  if (signal.quantity == Quantity::kContactForce) {
+    read_contact(assembly, reader, picked, signal);
+  } else if (!has_mass) {
+    reader.error_at(
+        "of", "it has no mass that moves, so it has no " + reader.optional_text("quantity", ""));
+  } else {
+    signal.index = add_group(assembly, {false, LinkKind::kLinear, picked.indices});
+  }
+  if (signal.quantity == Quantity::kAngularMomentum) {
+    read_turn(space, reader, signal);
+  } else {
+    read_direction_of_group(space, reader, signal);
+  }
+  read_rate(reader, signal);
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
+/// Reads what is taken of the values of many MATs, or of many links of one kind.
+void read_signal_of_many(Assembly& assembly, config::MappingReader& reader, Signal signal,
+                         const Selection& picked, std::vector<Signal>& signals) {
+  const std::vector<std::string> takes{"largest", "smallest", "mean", "sum"};
+  const auto take = std::ranges::find(takes, reader.required_choice("take", takes));
+  signal.take = static_cast<engine::Take>(take - takes.begin() + 1);
+  engine::VariableGroup group;
+  group.is_of_links = picked.kind == Named::kLinks;
+  Owner owner = Owner::kMat;
+  if (group.is_of_links) {
+    group.kind = kind_of_link(picked.indices.front());
+    owner = owner_of(group.kind);
+  }
+  bool is_of_one_kind = true;
+  for (const std::uint32_t member : picked.indices) {
+    is_of_one_kind = is_of_one_kind && (!group.is_of_links || kind_of_link(member) == group.kind);
+    group.members.push_back(group.is_of_links ? index_of_link(member) : member);
+  }
+  signal.kind = group.kind;
+  if (!is_of_one_kind) reader.error_at("of", "these links are of several kinds", "pick one kind");
+  const QuantityWord* quantity = read_quantity(reader, owner);
+  if (quantity != nullptr) {
+    signal.quantity = quantity->quantity;
+    signal.unit = quantity->unit;
+    if (is_count(signal.quantity))
+      reader.error_at("take", "a number of " + std::string(quantity->word) + " is one value");
+    if (quantity->has_direction) read_direction_of_group(assembly.scene.space(), reader, signal);
+  }
+  if (signal.quantity == Quantity::kForce) {
+    std::vector<std::uint32_t>& awake = assembly.scene.network.kept_awake;
+    awake.insert(awake.end(), group.members.begin(), group.members.end());
+  }
+  if (is_of_one_kind) signal.index = add_group(assembly, std::move(group));
+  read_rate(reader, signal);
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
 void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const std::string& name,
                         std::uint32_t set, std::vector<Signal>& signals) {
   const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
@@ -98,13 +225,64 @@ void read_count_of_links(config::MappingReader& reader, const std::string& name,
   signals.push_back(std::move(signal));
 }
 
+/// What `of` lists, where a liaison of sets is among it.
+struct JoinedLiaisons {
+  std::vector<std::uint32_t> sets;
+  std::vector<Value> others;
+};
+
+JoinedLiaisons joined_liaisons(const Assembly& assembly, const Value& subject) {
+  const bool is_list = subject.kind() == Value::Kind::kSequence;
+  JoinedLiaisons joined;
+  for (const Value& item : is_list ? subject.items() : std::vector<Value>{subject}) {
+    const std::vector<std::uint32_t> sets = assembly.sets_called(item.text());
+    joined.sets.insert(joined.sets.end(), sets.begin(), sets.end());
+    if (sets.empty()) joined.others.push_back(item);
+  }
+  return joined;
+}
+
+/// Reads a count over several liaisons of sets, and links with states beside them.
+void read_count_of_several(Assembly& assembly, config::MappingReader& reader,
+                           const std::string& name, JoinedLiaisons joined,
+                           std::vector<Signal>& signals) {
+  Signal signal;
+  signal.name = name;
+  for (const Value& other : joined.others) {
+    const std::optional<Selection> picked =
+        select(other, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
+    if (!picked) return;
+    for (const std::uint32_t link : picked->indices) {
+      if (picked->kind == Named::kLinks && kind_of_link(link) == LinkKind::kState) {
+        signal.state_links.push_back(index_of_link(link));
+        continue;
+      }
+      assembly.problems.error(other.place(),
+                              "beside liaisons of sets a signal is of links with states");
+      return;
+    }
+  }
+  for (std::vector<std::uint32_t>* list : {&signal.state_links, &joined.sets}) {
+    std::ranges::sort(*list);
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  signal.sets = std::move(joined.sets);
+  const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
+  if (quantity != nullptr) signal.quantity = quantity->quantity;
+  read_rate(reader, signal);
+  reader.finish();
+  signals.push_back(std::move(signal));
+}
+
 void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Signal>& signals) {
   check_name(entry.key, entry.key_place, assembly.problems);
   config::MappingReader reader(entry.value, "signal '" + entry.key + "'", assembly.problems);
   const Value subject = reader.optional_value("of");
-  const auto set = assembly.named_sets.find(subject.text());
-  if (set != assembly.named_sets.end())
-    return read_signal_of_set(assembly, reader, entry.key, set->second, signals);
+  JoinedLiaisons joined = joined_liaisons(assembly, subject);
+  if (joined.sets.size() == 1 && joined.others.empty())
+    return read_signal_of_set(assembly, reader, entry.key, joined.sets.front(), signals);
+  if (!joined.sets.empty())
+    return read_count_of_several(assembly, reader, entry.key, std::move(joined), signals);
   std::optional<Selection> picked;
   if (subject.exists()) {
     picked = select(subject, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
@@ -115,13 +293,28 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
   if (is_link && (word == "pieces" || word == "bonds")) {
     return read_count_of_links(reader, entry.key, *picked, signals);
   }
+  if (picked && !is_link) {
+    if (const QuantityWord* of_body = find_quantity(Owner::kBody, word)) {
+      Signal signal;
+      signal.name = entry.key;
+      signal.quantity = of_body->quantity;
+      signal.unit = of_body->unit;
+      return read_signal_of_body(assembly, reader, std::move(signal), *picked, signals);
+    }
+  }
+  if (picked && reader.has("take")) {
+    Signal signal;
+    signal.name = entry.key;
+    return read_signal_of_many(assembly, reader, std::move(signal), *picked, signals);
+  }
   const bool is_count = picked && !is_link && word == "pieces";
   if (picked && picked->count() != 1 && !is_count) {
     reader.error_at("of",
                     "a signal is of one MAT or one link, and " +
                         (subject.text().empty() ? "this list" : "'" + subject.text() + "'") +
                         " has " + std::to_string(picked->count()),
-                    "pick one: " + assembly.names.word_of(picked->indices[0], is_link));
+                    "pick one: " + assembly.names.word_of(picked->indices[0], is_link) +
+                        ", or take: largest, smallest, mean or sum");
   }
   Owner owner = Owner::kScene;
   if (picked) owner = is_link ? owner_of(kind_of_link(picked->indices[0])) : Owner::kMat;
@@ -159,7 +352,7 @@ std::vector<Signal> read_signals(Assembly& assembly, const Value& section) {
   std::vector<Signal> signals;
   for (const Value::Entry& entry : section.entries()) read_signal(assembly, entry, signals);
   for (const Signal& signal : signals) {
-    if (signal.quantity == Quantity::kForce)
+    if (signal.quantity == Quantity::kForce && is_of_one_mat(signal))
       assembly.scene.network.kept_awake.push_back(signal.index);
   }
   const auto is_sound = [](const Signal& signal) { return signal.is_sound; };
