@@ -11,6 +11,7 @@
 #include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/stability_check.h"
+#include "sim_node/devices/port_body.h"
 #include "sim_node/plan/reference/load.h"
 #include "sim_node/plan/reference/trial_run.h"
 #include "sim_node/scene/sections/scene_reader.h"
@@ -27,12 +28,12 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
       static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
   PortCheck result;
   result.port = &port;
-  result.load = plan::port_load(graph, port.mat);
+  result.load = sim::max_load_of(graph, scene, port);
   if (port.role == scene::Role::kMass) {
     result.min_device_viscosity = plan::min_device_viscosity(result.load, loop);
   } else {
     result.largest_hand_stiffness =
-        plan::largest_hand_stiffness(result.load, scene.network.mats[port.mat].mass, loop);
+        plan::largest_hand_stiffness(result.load, sim::mass_of(scene, port), loop);
   }
   return result;
 }

@@ -31,7 +31,11 @@ void refuse_saved_state(const scene::Scene& scene) {
 void record(OfflineSession& session, LabScene& lab) {
   lab.scene = scene::Scene(session.scene());
   lab.trajectory.period = 1.0 / lab.scene.gesture_rate_hz;
-  std::vector<const scene::Port*> played;
+  struct Played {
+    const scene::Port* port;
+    double share;  // of a mass of a body
+  };
+  std::vector<Played> played;
   for (const scene::Port& port : lab.scene.ports) {
     if (!session.plays(port)) {
       lab.ports.push_back(port.name + " rests: '" + port.device + "' is no simulated device");
@@ -40,14 +44,18 @@ void record(OfflineSession& session, LabScene& lab) {
     const bool is_force = port.role == scene::Role::kLiaison;
     lab.ports.push_back(port.name + " is played by '" + port.device + "' (" +
                         session.driver_of(port) + "), as in one run at the scene's own rate");
-    played.push_back(&port);
-    lab.trajectory.channels.push_back({port.mat, is_force, {}});
-    if (!is_force) lab.trajectory.channels.back().value.push_back(port.rest);
+    const std::vector<scene::BodyMass> alone{{port.mat, 1.0}};
+    for (const scene::BodyMass& part : port.body.empty() ? alone : port.body) {
+      played.push_back({&port, part.share});
+      lab.trajectory.channels.push_back({part.mat, is_force, {}});
+      if (!is_force) lab.trajectory.channels.back().value.push_back(port.rest);
+    }
   }
   if (played.empty()) return;
   session.play_until(lab.duration_s, [&] {
     for (std::size_t p = 0; p < played.size(); ++p) {
-      lab.trajectory.channels[p].value.push_back(session.device_value(*played[p]));
+      lab.trajectory.channels[p].value.push_back(played[p].share *
+                                                 session.device_value(*played[p].port));
     }
   });
 }

@@ -2,6 +2,7 @@
 #include "cli/simulate/session_table.h"
 
 #include "cli/mat_words.h"
+#include "sim_node/devices/port_body.h"
 
 namespace cordis::cli {
 namespace {
@@ -61,7 +62,7 @@ const std::vector<double>& SessionTable::row() {
   for (const PortAxis& port_axis : port_axes_) {
     const scene::Port& port = *port_axis.port;
     const engine::Vec3& direction = port.directions[port_axis.axis];
-    *value++ = (world.position(port.mat) - port.rest).dot(direction);
+    *value++ = (sim::position_of(world, port) - port.rest).dot(direction);
     const bool is_mass = port.role == scene::Role::kMass;
     *value++ = is_mass ? world.link_force(port.mat).dot(direction)
                        : session_.device_value_on_axis(port, port_axis.axis);

@@ -38,7 +38,7 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
   const std::vector<double> weight = plan::row_weights(fullest, dt).weight;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
-    steady_[i] = number(0.0, graph.medium_viscosity) * weight[i];
+    steady_[i] = number(0.0, graph.medium_viscosity[i]) * weight[i];
   }
   for (const plan::Edge& edge : graph.edges) {
     if (edge.liaison.kind == plan::LiaisonKind::kStateLink) continue;

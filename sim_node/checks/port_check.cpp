@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "node/config/mapping_reader.h"
+#include "sim_node/devices/port_body.h"
 
 namespace cordis::sim {
 namespace {
@@ -135,8 +136,8 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene) {
   const auto sub_steps = static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
   for (const scene::Port& port : scene.ports) {
     demands.push_back({port.name, port.device, port.device_id, port.place, port.role,
-                       scene.network.mats[port.mat].mass, plan::min_port_load(graph, port.mat),
-                       plan::port_load(graph, port.mat), sub_steps, port.axes, port.needs});
+                       mass_of(scene, port), min_load_of(graph, scene, port),
+                       max_load_of(graph, scene, port), sub_steps, port.axes, port.needs});
   }
   return demands;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim_node/devices/port_body.h"
 #include "sim_node/engine/core/assert.h"
 
 namespace cordis::sim {
@@ -184,7 +185,7 @@ void DeviceExchange::play(engine::World& world, int number, double share) noexce
       const engine::Vec3 stop = travel_stops_->force(p, world);
       if (!stop.isZero(0.0)) added = stop;
     }
-    world.set_external_force(port.mat, value + added);
+    push(world, port, value + added);
   }
   if (!passivity_controller_ || number != 1) return;
   if (std::exchange(new_work_, false)) passivity_controller_->start();
@@ -224,7 +225,7 @@ msg::GesturePositions& DeviceExchange::answer_positions(const engine::World& wor
   if (passivity_controller_) passivity_controller_->record_answer(answers_);
   if (!safe) return positions_;
   for (const scene::Port& port : ports_) {
-    const engine::Vec3 moved = world.position(port.mat) - port.rest;
+    const engine::Vec3 moved = position_of(world, port) - port.rest;
     for (std::size_t i = 0; i < port.axes.size(); ++i) {
       positions_.position_m()[port.axes[i]] = moved.dot(port.directions[i]);
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim_node/plan/stability/port_limit.h"
+#include "sim_node/devices/port_body.h"
 
 namespace cordis::sim {
 namespace {
@@ -41,10 +41,9 @@ PassivityController::PassivityController(const scene::Scene& scene,
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
   for (const scene::Port& port : ports) {
     DampedPort damped;
-    damped.mat = port.mat;
+    damped.port = port;
     damped.axes = projection_on(port.directions);
-    damped.most =
-        max_damping(plan::port_load(graph, port.mat), scene.network.mats[port.mat].mass, dt_);
+    damped.most = max_damping(max_load_of(graph, scene, port), mass_of(scene, port), dt_);
     ports_.push_back(damped);
   }
 }
@@ -58,7 +57,7 @@ void PassivityController::start() noexcept {
 Vec3 PassivityController::damping_force(std::size_t port, const engine::World& world,
                                         const Vec3& hand_force) noexcept {
   DampedPort& damped = ports_[port];
-  const Vec3 position = world.position(damped.mat);
+  const Vec3 position = position_of(world, damped.port);
   if (!std::exchange(damped.moves, true)) damped.now = damped.before = position;
   const Vec3 way = position - damped.now;
   const Vec3 way_before = damped.now - damped.before;

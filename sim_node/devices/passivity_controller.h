@@ -53,7 +53,7 @@ class PassivityController {
 
  private:
   struct DampedPort {
-    std::uint32_t mat = 0;
+    scene::Port port;
     Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();     // projects on what the axes span
     double most = 0.0;                                  // largest damping that is stable [N s/m]
     bool moves = false;                                 // what follows is known

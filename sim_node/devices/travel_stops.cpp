@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim_node/plan/stability/port_limit.h"
+#include "sim_node/devices/port_body.h"
 
 namespace cordis::sim {
 namespace {
@@ -24,10 +24,10 @@ TravelStops::TravelStops(const scene::Scene& scene, const std::vector<scene::Por
     : dt_(scene.network.step) {
   const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
   for (const scene::Port& port : ports) {
-    const double mass = scene.network.mats[port.mat].mass;
-    StoppedPort stopped{port.mat, port.rest, 0.0, {}};
+    const double mass = mass_of(scene, port);
+    StoppedPort stopped{port, 0.0, {}};
     stopped.strength =
-        share_beside(plan::port_load(graph, port.mat), mass, dt_) * mass / (dt_ * dt_);
+        share_beside(max_load_of(graph, scene, port), mass, dt_) * mass / (dt_ * dt_);
     for (std::size_t i = 0; i < port.axes.size(); ++i) {
       stopped.axes.push_back({port.axes[i], port.directions[i], {}, {}});
     }
@@ -59,8 +59,8 @@ double TravelStops::Stop::push(double place, double way, double back) noexcept {
 
 Vec3 TravelStops::force(std::size_t port, const engine::World& world) noexcept {
   StoppedPort& stopped = ports_[port];
-  const Vec3 moved = world.position(stopped.mat) - stopped.rest;
-  const Vec3 way = dt_ * world.velocity(stopped.mat);
+  const Vec3 moved = position_of(world, stopped.port) - stopped.port.rest;
+  const Vec3 way = dt_ * velocity_of(world, stopped.port);
   Vec3 force = Vec3::Zero();
   for (Axis& axis : stopped.axes) {
     const double place = moved.dot(axis.direction);

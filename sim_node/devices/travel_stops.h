@@ -55,8 +55,7 @@ class TravelStops {
     Stop lower;
   };
   struct StoppedPort {
-    std::uint32_t mat = 0;
-    engine::Vec3 rest = engine::Vec3::Zero();
+    scene::Port port;
     double strength = 0.0;  // share m / dt^2 [N/m]
     std::vector<Axis> axes;
   };

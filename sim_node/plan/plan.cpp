@@ -237,11 +237,14 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
     if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);
     crowd.stiffness = 0.0;
   }
-  const double most = *std::max_element(graph.inverse_mass.begin(), graph.inverse_mass.end());
+  double of_medium = 0.0;
+  for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
+    of_medium = std::max(of_medium, graph.medium_viscosity[i] * graph.inverse_mass[i]);
+  }
   const double of_dampers = 2.0 / edge_bound(dampers).step;  // 2 dt Z = 4
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
-  edge.viscosity = std::min(w * w * ratio + graph.medium_viscosity * most, of_dampers);
+  edge.viscosity = std::min(w * w * ratio + of_medium, of_dampers);
   edge.error = oscillator_error(w, edge.viscosity, network.step, network.integrator);
   return edge;
 }
@@ -278,7 +281,7 @@ double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGrap
   }
   graph.set_step(network, network.step);
   graph = weighted(std::move(graph), weights);
-  graph.medium_viscosity = 0.0;
+  std::ranges::fill(graph.medium_viscosity, 0.0);
   for (Edge& edge : graph.edges) edge.viscosity = 0.0;
   for (ContactBound& crowd : graph.crowds) crowd.viscosity = 0.0;
   return std::min(row_weights(graph, network.step).number, kMaxNumber);

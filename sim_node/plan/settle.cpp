@@ -39,7 +39,10 @@ NetworkDescription undamped(NetworkDescription network) {
   for (engine::TimeFunction& function : network.time_functions) {
     function = {{}, {0.0}, {value_at(function, 0.0)}, false};  // a table of one value stays at it
   }
-  for (engine::Mat& mat : network.mats) mat.velocity = Vec3::Zero();
+  for (engine::Mat& mat : network.mats) {
+    mat.velocity = Vec3::Zero();
+    mat.medium_viscosity = engine::Mat::kOfNetwork;
+  }
   for (engine::Link& link : network.links) link.viscosity = 0.0;
   for (engine::StateMachine& state_machine : network.state_machines) {
     state_machine = start_state_alone(state_machine);

@@ -48,14 +48,17 @@ msg::PortDescription port_of(const scene::Port& port) {
 }
 
 /// Where the port is, and along what its axes move it, in the coordinates of a frame.
-msg::PortFrame frame_of(const scene::Port& port, const FrameLayout& layout) {
+msg::PortFrame frame_of(const scene::Scene& scene, const scene::Port& port,
+                        const FrameLayout& layout) {
   const auto shown = [&](const engine::Vec3& position) {
     std::array<float, 3> place{};
     layout.show(port.mat, position.data(), place.data());
     return place;
   };
   msg::PortFrame frame;
-  const std::array<float, 3> rest = shown(port.rest);
+  // Of a body it is where the mass is that stands for it.
+  const std::array<float, 3> rest =
+      shown(port.body.empty() ? port.rest : scene.network.mats[port.mat].position);
   frame.rest_m().assign(rest.begin(), rest.end());
   const std::array<float, 3> origin = shown(engine::Vec3::Zero());
   for (const engine::Vec3& direction : port.directions) {
@@ -163,7 +166,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   const FrameLayout layout = layout_of(scene);
   for (const scene::Port& port : scene.ports) {
     description.ports().push_back(port_of(port));
-    description.port_frames().push_back(frame_of(port, layout));
+    description.port_frames().push_back(frame_of(scene, port, layout));
   }
   for (const engine::Surface& surface : scene.network.surfaces) {
     description.surfaces().push_back(surface_of(scene, surface, layout));

@@ -51,21 +51,30 @@ struct PortNeeds {
   config::Place place;  ///< where it is said
 };
 
-/// A MAT played by axes of a device.
+/// A mass of a body that a port moves, and its part of the mass of all.
+struct BodyMass {
+  std::uint32_t mat = 0;
+  double share = 0.0;  ///< all together are 1
+};
+
+/// A MAT, or a body, played by axes of a device.
 ///
 /// Role mass: an imposed position, rest + sum of axis position times direction; the force of an
 /// axis is the MAT's force along its direction. Role liaison: a mass on which the device puts the
 /// sum of axis force times direction; the position of an axis is the MAT's displacement from rest
-/// along its direction.
+/// along its direction. Of a body the position is that of its centre of mass, and each mass gets its
+/// share of the force.
 struct Port {
   std::string name;
   std::string device;           ///< name of the device_node
   std::uint32_t device_id = 0;  ///< its name_hash
   Role role = Role::kMass;      ///< the same in all ports of one device
   std::uint32_t mat =
-      0;  ///< the MAT at the port: MatKind::kPort in role mass, kMass in role liaison
+      0;  ///< the MAT at the port: MatKind::kPort in role mass, kMass in role liaison; of a body
+          ///< that mass which is nearest to its centre
   std::uint32_t tool =
       0;  ///< the MAT that the scene touches: that at the port, or the tool coupled to it
+  std::vector<BodyMass> body;                ///< the masses of a body; empty: the MAT alone
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
   std::vector<std::uint32_t>
       axes;  ///< of the device, each below config::kMaxAxes, none twice in a scene

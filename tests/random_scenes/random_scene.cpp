@@ -23,7 +23,8 @@ class SceneWriter {
       : random_(seed),
         friction_random_(~seed),
         random_of_drives_(seed ^ 0x5bd1e995U),
-        random_of_variables_(seed ^ 0x2545f491U) {
+        random_of_variables_(seed ^ 0x2545f491U),
+        random_of_media_(seed ^ 0x1b873593U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -35,7 +36,9 @@ class SceneWriter {
     write_head();
     write_masses();
     if (matter_ != Matter::kPotentials) drive_some();
+    if (matter_ == Matter::kAnything) perhaps_in_a_medium();
     write_port();
+    perhaps_hold_the_body();
     const std::uint32_t links = 1 + below(count_ + 2);
     for (std::uint32_t l = 0; l < links; ++l) add_link(l);
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
@@ -156,6 +159,26 @@ class SceneWriter {
     } else if (choice < 0.25) {
       masses_.insert(masses_.size() - 2, ", driven: {force_n: " + function_of_time(0.05) + "}");
     }
+  }
+
+  double medium_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_media_()) / 4294967296.0;
+  }
+
+  /// A fifth of the matter has a viscosity of the medium of its own, 0 too.
+  void perhaps_in_a_medium() {
+    const double choice = medium_between(0.0, 1.0);
+    const double viscosity = 1e-4 * std::pow(3000.0, medium_between(0.0, 1.0));
+    if (choice > 0.2) return;
+    masses_.insert(masses_.size() - 2, fmt::format(", medium_viscosity_n_s_per_m: {:.4g}",
+                                                   choice < 0.03 ? 0.0 : viscosity));
+  }
+
+  /// A tenth of the bodies has a port at its centre of mass.
+  void perhaps_hold_the_body() {
+    if (matter_ == Matter::kModes || medium_between(0.0, 1.0) > 0.1) return;
+    port_ += fmt::format("  body: {{device: fingers, axes: [0], role: liaison, of: p{}}}\n",
+                         space_ > 1 ? ", along: y" : "");
   }
 
   void write_port() {
@@ -583,6 +606,7 @@ class SceneWriter {
   std::mt19937 friction_random_;
   std::mt19937 random_of_drives_;     // by itself: what a seed draws besides does not depend on it
   std::mt19937 random_of_variables_;  // likewise
+  std::mt19937 random_of_media_;      // likewise
   bool may_rub_ = false;
   int space_ = 3;
   Matter matter_ = Matter::kAnything;

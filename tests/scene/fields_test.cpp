@@ -1,4 +1,5 @@
 // tests/scene/fields_test.cpp -- gravity that changes in time, and a medium that flows.
+#include <array>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -135,6 +136,154 @@ TEST(Fields, MayBothBeAsDeepAsOneFormulaMayBe) {
   EXPECT_EQ(world.network().description().drives.size(), 2 * 2u);
 }
 
+TEST(Fields, PushBesideAForceOfTheMatter) {
+  const Scene scene = sound_scene(2, R"yaml(
+world: {gravity_m_per_s2: ["sin(time_s)", -9], flow_m_per_s: [4, 0], viscosity_n_s_per_m: 0.5}
+matter:
+  puck: {
+kind:
+  mass, mass_kg : 2, at_m : [ 0, 0 ], driven : {
+  force_n:
+    [ 3, "time_s" ]
+  }
+}
+  free: {kind: mass, mass_kg: 1, at_m: [1, 0]}
+)yaml");
+  for (const double time : {0.0, 0.3, 2.0}) {
+    std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()};
+    for (const engine::Drive& drive : scene.network.drives)
+      force.at(drive.mat) += value_at(scene.network, drive, time);
+    const Vec3 of_fields = Vec3(std::sin(time), -9, 0);
+    EXPECT_LT((force[0] - (2.0 * of_fields + Vec3(2 + 3, time, 0))).norm(), 1e-13);
+    EXPECT_LT((force[1] - (of_fields + Vec3(2, 0, 0))).norm(), 1e-13);
+  }
+  World world = world_of(scene);
+  for (int n = 0; n < 2000; ++n) world.step();
+  const engine::Energy energy = world.energy();
+  EXPECT_LT(std::abs(energy.residual()), 1e-12 * energy.largest);
+}
+
+/// Free masses, each with a viscosity of the medium of its own.
+struct Floating {
+  std::vector<double> masses;
+  std::vector<double> viscosities;
+  std::string matter = "matter:\n";
+
+  explicit Floating(std::mt19937& random) {
+    std::uniform_real_distribution<double> any(0.05, 2.0);
+    for (int i = 0; i < 30; ++i) {
+      masses.push_back(any(random));
+      viscosities.push_back(random() % 4 == 0 ? 0.0 : any(random));
+      matter += "  m" + std::to_string(i) + ": {kind: mass, at_m: [" + std::to_string(i) +
+                ", 0], velocity_m_per_s: [2, 1], mass_kg: " + config::number_text(masses.back());
+      if (random() % 3 == 0) {
+        viscosities.back() = 0.25;  // that of the world
+      } else {
+        matter += ", medium_viscosity_n_s_per_m: " + config::number_text(viscosities.back());
+      }
+      matter += "}\n";
+    }
+  }
+};
+
+TEST(Medium, TakesFromEachMassByItsOwnViscosity) {
+  std::mt19937 random(test::test_seed());
+  const Floating floating(random);
+  const Scene scene = sound_scene(2, "world: {viscosity_n_s_per_m: 0.25}\n" + floating.matter);
+  World world = world_of(scene);
+  constexpr int kSteps = 500;
+  for (int n = 0; n < kSteps; ++n) world.step();
+
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    // x(n+1) - x(n) = (1 - dt Z / m) (x(n) - x(n-1)), from v(-1/2) = (1 + dt Z / 2 m) v
+    const double taken = 1e-3 * floating.viscosities[i] / floating.masses[i];
+    const double speed = 2.0 * (1.0 + 0.5 * taken) * std::pow(1.0 - taken, kSteps);
+    EXPECT_NEAR(world.velocity(i).x(), speed, 1e-12) << i;
+  }
+  const engine::Energy energy = world.energy();
+  EXPECT_LT(std::abs(energy.residual()), 1e-12 * energy.largest);
+}
+
+TEST(Medium, IsForEachMassAsIfItWereAlone) {
+  for (const char* integrator : {"cordis", "leapfrog", "implicit"}) {
+    SCOPED_TRACE(integrator);
+    std::mt19937 random(test::test_seed());
+    const Floating floating(random);
+    const auto world_in = [&](double viscosity, const std::string& matter) {
+      config::Problems problems;
+      const Scene scene = load_scene_text(
+          "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, integrator: " + std::string(integrator) +
+              "}\nworld: {gravity_m_per_s2: [0, -9], viscosity_n_s_per_m: " +
+              config::number_text(viscosity) + "}\n" + matter,
+          "t", problems);
+      EXPECT_EQ(problems.text(), "");
+      return world_of(scene);
+    };
+    World all = world_in(0.25, floating.matter);
+    for (int n = 0; n < 700; ++n) all.step();
+    double dissipated = 0.0;
+    for (std::uint32_t i = 0; i < 30; ++i) {
+      World alone =
+          world_in(floating.viscosities[i], "matter: {m: {kind: mass, at_m: [" + std::to_string(i) +
+                                                ", 0], velocity_m_per_s: [2, 1], mass_kg: " +
+                                                config::number_text(floating.masses[i]) + "}}\n");
+      for (int n = 0; n < 700; ++n) alone.step();
+      ASSERT_EQ(all.position(i), alone.position(0)) << i;
+      dissipated += alone.energy().dissipated;
+    }
+    EXPECT_NEAR(all.energy().dissipated, dissipated, 1e-12 * dissipated);
+  }
+}
+
+TEST(Medium, OfTheMatterThatIsThatOfTheWorldHasItsBits) {
+  const std::string masses =
+      "{kind: string, count: 9, mass_kg: 0.1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: "
+      "50, "
+      "tension_n: 1, spin_rad_per_s: 3";
+  const Scene of_world =
+      sound_scene(2, "world: {viscosity_n_s_per_m: 0.3}\nmatter: {s: " + masses + "}}\n");
+  const Scene of_matter =
+      sound_scene(2, "matter: {s: " + masses + ", medium_viscosity_n_s_per_m: 0.3}}\n");
+  World first = world_of(of_world);
+  World second = world_of(of_matter);
+  for (int n = 0; n < 500; ++n) {
+    first.step();
+    second.step();
+  }
+  EXPECT_EQ(first.state_hash(), second.state_hash());
+}
+
+TEST(Medium, AFlowCarriesWhatIsInIt) {
+  const Scene scene = sound_scene(2, R"(
+world: {gravity_m_per_s2: [0, -10], flow_m_per_s: [3, 0]}
+matter:
+  leaf: {kind: mass, mass_kg: 0.02, at_m: [0, 0], medium_viscosity_n_s_per_m: 0.4}
+  seed: {kind: mass, mass_kg: 0.02, at_m: [1, 0], medium_viscosity_n_s_per_m: 0.1}
+  stone: {kind: mass, mass_kg: 5, at_m: [2, 0]}
+)");
+  World world = world_of(scene);
+  for (int n = 0; n < 9000; ++n) world.step();
+
+  EXPECT_LT((world.velocity(0) - Vec3(3, -0.02 * 10 / 0.4, 0)).norm(), 1e-10);
+  EXPECT_LT((world.velocity(1) - Vec3(3, -0.02 * 10 / 0.1, 0)).norm(), 1e-10);
+  EXPECT_EQ(world.velocity(2).x(), 0.0);
+}
+
+TEST(Medium, ModesWantOneDecayOfAllMasses) {
+  const auto refusal = [](const std::string& of_b) {
+    config::Problems problems;
+    load_scene_text(
+        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\nmatter:\n"
+        "  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}\n"
+        "  b: {kind: mass, mass_kg: 2, at_m: 0, medium_viscosity_n_s_per_m: " +
+            of_b + "}\n",
+        "t", problems);
+    return problems.text();
+  };
+  EXPECT_EQ(refusal("0.4"), "");
+  EXPECT_NE(refusal("0.2").find("different masses in a medium"), std::string::npos);
+}
+
 class BadFields : public testing::TestWithParam<BadScene> {};
 
 TEST_P(BadFields, HaveOneProblemAtTheirPlace) {
@@ -146,23 +295,27 @@ const std::string kNoMedium = std::string("world: {flow_m_per_s: ^[1, 0]}\n") + 
 const std::string kNoName = std::string("world: {gravity_m_per_s2: [0, \"^tim_s\"]}\n") + kBob;
 const std::string kNoNumber =
     std::string("world: {gravity_m_per_s2: ^[0, \"1 / time_s\"]}\n") + kBob;
-const std::string kPushed =
-    "world: {gravity_m_per_s2: ^[0, \"time_s\"]}\n"
-    "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 0], driven: {force_n: [1, 0]}}}\n";
+const std::string kFixed =
+    "matter: {w: {kind: fixed, at_m: [0, 0], medium_viscosity_n_s_per_m: ^1}, b: {kind: mass, "
+    "mass_kg: 1, "
+    "at_m: [0, 1]}}\n";
+const std::string kNegative =
+    "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 1], medium_viscosity_n_s_per_m: ^-1}}\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Scene, BadFields,
     testing::Values(
         BadScene{kHead2, kNoMedium.c_str(),
-                 "a medium that flows needs a viscosity_n_s_per_m > 0 in world", ""},
+                 "a medium that flows needs a viscosity_n_s_per_m > 0 in world, or a "
+                 "medium_viscosity_n_s_per_m > 0 of matter",
+                 ""},
         BadScene{kHead2, kNoName.c_str(), "'gravity_m_per_s2' in world cannot ask for 'tim_s'",
                  "did you mean 'time_s'?"},
         BadScene{kHead2, kNoNumber.c_str(),
                  "'gravity_m_per_s2' in world is no finite number within 1e6 at 0 s", ""},
-        BadScene{kHead2, kPushed.c_str(),
-                 "b is pushed by 'force_n', and cannot be pushed by gravity that changes "
-                 "or by a flow as well",
-                 ""}));
+        BadScene{kHead2, kFixed.c_str(), "what is fixed or driven feels no medium", ""},
+        BadScene{kHead2, kNegative.c_str(),
+                 "'medium_viscosity_n_s_per_m' in matter 'b' must be >= 0, got -1", ""}));
 
 }  // namespace
 }  // namespace cordis::scene

@@ -76,7 +76,7 @@ parts:
     matter: {ends: {kind: points, mass_kg: $mass_kg, at_m: [0, 0.1]}}
     links: [{liaison: soft, between: ["ends[0]", "ends[1]"]}]
 matter:
-  one: {kind: mass, mass_kg: 0.1, at_m: 0.5, velocity_m_per_s: 0, layout_at_m: [0, 0]}
+  one: {kind: mass, mass_kg: 0.1, at_m: 0.5, velocity_m_per_s: 0, layout_at_m: [0, 0], medium_viscosity_n_s_per_m: 0.1}
   ball: {kind: mass, at_m: 0.9, ball: {mass_kg: 0.1, radius_m: 0.01}}
   wall: {kind: fixed, at_m: 0, ball: {radius_m: 0.01}}
   shaker: {kind: fixed, driven: {parameters: {f_hz: 2}, position_m: 0.1 * sin(2 * pi * f_hz * time_s)}}
@@ -155,6 +155,7 @@ links:
   - {liaison: touch, between_sets: [heap, floor], range_m: 0.1}
 ports:
   hand: {device: mouse, axes: [0, 1], role: mass, at_m: [0, 1], along: [x, y]}
+  grip: {device: glove, axes: [0, 1], role: liaison, of: plate}
 signals:
   pile: {of: heap, quantity: pieces, near_m: 0.1}
   force: {of: hand, quantity: force, axis: y}

@@ -26,6 +26,7 @@ class Fingerprint {
     add(mat.position);
     add(mat.velocity);
     if (mat.weightless) add(std::uint64_t{1});
+    if (mat.medium_viscosity >= 0.0) add(mat.medium_viscosity);
   }
   void add(const Link& link) {
     add(link.mat_a);

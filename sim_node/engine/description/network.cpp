@@ -39,7 +39,8 @@ void check_mat(const NetworkDescription& description, const Mat& mat, const std:
   require(std::isfinite(mat.mass) && mat.mass > 0.0, name + ": mass", "finite and > 0");
   const double dt = description.step;
   require(std::isfinite(dt * dt / mat.mass), name + ": mass", "large enough for the step");
-  require(std::isfinite(dt * description.medium_viscosity / mat.mass), name + ": mass",
+  require(std::isfinite(mat.medium_viscosity), name + ": viscosity of the medium", "finite");
+  require(std::isfinite(dt * description.medium_viscosity_on(mat) / mat.mass), name + ": mass",
           "large enough for the viscosity of the medium");
 }
 
@@ -297,6 +298,12 @@ void check(const NetworkDescription& description) {
 }
 
 }  // namespace
+
+bool NetworkDescription::has_medium() const noexcept {
+  return std::ranges::any_of(mats, [this](const Mat& mat) {
+    return mat.kind == MatKind::kMass && medium_viscosity_on(mat) > 0.0;
+  });
+}
 
 std::size_t NetworkDescription::mass_count() const noexcept {
   return static_cast<std::size_t>(std::ranges::count(mats, MatKind::kMass, &Mat::kind));

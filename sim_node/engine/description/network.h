@@ -24,6 +24,9 @@ struct Mat {
   Vec3 position = Vec3::Zero();  ///< at step 0 [m]; components beyond the dimension must be 0
   Vec3 velocity = Vec3::Zero();  ///< at step 0 [m/s]; must be 0 unless kMass
   bool weightless = false;       ///< gravity leaves it alone: something outside carries it
+  double medium_viscosity = kOfNetwork;  ///< Z of the medium on it [N s/m]; below 0: of the network
+
+  static constexpr double kOfNetwork = -1.0;
 };
 
 /// One linear LIA: spring (viscosity 0), damper (stiffness 0) or both in parallel.
@@ -96,8 +99,9 @@ struct NetworkDescription {
   int dimension = 3;  ///< 1, 2 or 3
   double step = 0.0;  ///< dt [s], > 0
   IntegratorKind integrator = IntegratorKind::kCordis;
-  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
-  double medium_viscosity = 0.0;  ///< Z of the medium on every mass [N s/m], >= 0
+  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; components beyond the dimension must be 0
+  double medium_viscosity =
+      0.0;  ///< Z of the medium on masses that say none themselves [N s/m], >= 0
   double freeze_tolerance = 0.0;  ///< masses that rest within it are left out, see Freezing; 0:
                                   ///< none [m]
   std::vector<std::uint32_t> kept_awake;  ///< MATs that never are, since their force is asked for
@@ -118,6 +122,11 @@ struct NetworkDescription {
   Vec3 gravity_on(const Mat& mat) const noexcept {
     return mat.weightless ? Vec3(Vec3::Zero()) : gravity;
   }
+  /// Z of the medium on a mass [N s/m].
+  double medium_viscosity_on(const Mat& mat) const noexcept {
+    return mat.medium_viscosity < 0.0 ? medium_viscosity : mat.medium_viscosity;
+  }
+  bool has_medium() const noexcept;         ///< it takes something from a mass. O(MATs)
   std::size_t mass_count() const noexcept;  ///< MATs of kind kMass. O(MATs)
 };
 

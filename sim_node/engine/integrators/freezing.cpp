@@ -130,7 +130,7 @@ void Freezing::adopt(const NetworkDescription& network,
     double kick = tolerance * stiffness / mass_over_dt2_[i];
     const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
     if (weight_step > 0.0) kick = std::min(kick, (1.0 - kMinCarried) * weight_step);
-    const double viscosity = of_mats[i].viscosity + network.medium_viscosity;
+    const double viscosity = of_mats[i].viscosity + network.medium_viscosity_on(network.mats[i]);
     double moved = tolerance;
     if (viscosity > 0.0) moved = std::min(moved, tolerance * stiffness * dt / viscosity);
     max_push_[i] = kick * kick;

@@ -25,7 +25,6 @@ NetworkDescription dampers_alone(const NetworkDescription& network) {
 ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
     : is_1d_(network.dimension == 1),
       dt_(network.step),
-      medium_viscosity_(network.step * network.medium_viscosity),
       matrix_(dampers_alone(network)),
       displacement_(4 * network.mats.size(), 0.0),
       drag_of_ports_(displacement_.size(), 0.0),
@@ -40,6 +39,7 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     const Mat& mat = network.mats[i];
     mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
+    medium_viscosity_.push_back(network.step * network.medium_viscosity_on(mat));
     if (mat.kind == MatKind::kPort) ports_.push_back(i);
   }
   for (const Link& link : network.links) {
@@ -172,7 +172,7 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
       work.port_work += dot(begin, column(drag_, i));
       continue;
     }
-    column(drag_, i) += medium_viscosity_ * column(middle_, i);
+    column(drag_, i) += medium_viscosity_[i] * column(middle_, i);
     const Vec3 end =
         begin + (part * mats.pushed_by(i, mats.force(i)) - column(drag_, i) / mass_[i]);
     const double energy_at_begin = mass_[i] * dot(begin, begin);

@@ -90,13 +90,13 @@ class ImplicitDamping {
   bool is_1d_;
   double dt_;
   std::vector<Damper> dampers_;
-  std::vector<double> mass_;             // [kg], 0 unless a mass
-  double medium_viscosity_;              // dt Z [kg]
-  std::vector<std::uint32_t> ports_;     // that move
-  StiffnessMatrix matrix_;               // M + g dt Z
-  AlignedVector<double> displacement_;   // dt v(n-1/2)
-  AlignedVector<double> drag_of_ports_;  // g dt Z of their displacements, on the masses [kg m]
-  AlignedVector<double> constant_;       // forces [N]
+  std::vector<double> mass_;              // [kg], 0 unless a mass
+  std::vector<double> medium_viscosity_;  // dt Z of the medium, per MAT [kg]
+  std::vector<std::uint32_t> ports_;      // that move
+  StiffnessMatrix matrix_;                // M + g dt Z
+  AlignedVector<double> displacement_;    // dt v(n-1/2)
+  AlignedVector<double> drag_of_ports_;   // g dt Z of their displacements, on the masses [kg m]
+  AlignedVector<double> constant_;        // forces [N]
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   AlignedVector<double> first_;   // dt u1

@@ -22,7 +22,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
 
 std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
     const NetworkDescription& network) {
-  if (network.medium_viscosity > 0.0) return IntegratorRefusal{"viscosity", {}};
+  if (network.has_medium()) return IntegratorRefusal{"viscosity", {}};
   if (!network.drives.empty()) return IntegratorRefusal{"what follows a function of time", {}};
   for (const Mat& mat : network.mats) {
     if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
@@ -68,12 +68,15 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
     }
   }
   double mass = 0.0;
+  double decay = 0.0;  // Z / m of the medium
   for (const Mat& mat : network.mats) {
     if (mat.kind != MatKind::kMass) continue;
-    if (network.medium_viscosity > 0.0 && mass > 0.0 && differ(mass, mat.mass)) {
+    const double own_decay = network.medium_viscosity_on(mat) / mat.mass;
+    if (mass > 0.0 && differ(decay, own_decay)) {
       return IntegratorRefusal{"different masses in a medium", {}};
     }
     mass = mat.mass;
+    decay = own_decay;
   }
   if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
   if (network.mass_count() > kMaxModalMasses) {
@@ -135,7 +138,8 @@ std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
 }
 
 double largest_extrapolated_step(const NetworkDescription& network) {
-  std::vector<double> viscosity(network.mats.size(), network.medium_viscosity);
+  std::vector<double> viscosity;
+  for (const Mat& mat : network.mats) viscosity.push_back(network.medium_viscosity_on(mat));
   for (const Link& link : network.links) {
     viscosity[link.mat_a] += link.viscosity;
     viscosity[link.mat_b] += link.viscosity;
@@ -146,7 +150,7 @@ double largest_extrapolated_step(const NetworkDescription& network) {
   };
   double most = 0.0;
   for (std::uint32_t i = 0; i < viscosity.size(); ++i) {
-    if (network.medium_viscosity > 0.0) most = std::max(most, share(i));
+    if (network.medium_viscosity_on(network.mats[i]) > 0.0) most = std::max(most, share(i));
   }
   for (const Link& link : network.links) {
     if (link.viscosity > 0.0) most = std::max(most, share(link.mat_a) + share(link.mat_b));

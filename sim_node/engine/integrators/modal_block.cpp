@@ -110,7 +110,8 @@ void ModalBlock::find_modes(const NetworkDescription& network) {
     add(link.mat_b, link.mat_a, -link.stiffness);
     if (link.viscosity > 0.0) ratio = link.viscosity / link.stiffness;
   }
-  const double of_medium = network.medium_viscosity / network.mats[masses.front()].mass;
+  const Mat& first = network.mats[masses.front()];
+  const double of_medium = network.medium_viscosity_on(first) / first.mass;
   const double max_stiffness = stiffness.diagonal().maxCoeff();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness);
   const Eigen::MatrixXd& modes = solver.eigenvectors();

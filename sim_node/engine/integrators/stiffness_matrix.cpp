@@ -51,7 +51,8 @@ void StiffnessMatrix::order_masses(const NetworkDescription& network) {
     const std::uint32_t mat = masses[static_cast<std::size_t>(order.indices()[k])];
     place_[mat] = static_cast<std::uint32_t>(k);
     mat_.push_back(mat);
-    inertia_.push_back(network.mats[mat].mass + network.step * network.medium_viscosity);
+    const double viscosity = network.medium_viscosity_on(network.mats[mat]);
+    inertia_.push_back(network.mats[mat].mass + network.step * viscosity);
   }
 }
 

@@ -19,7 +19,8 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
       velocity_retention_(description.mats.size(), 1.0),
       dt_(description.step),
       weight_step_(description.gravity * description.step * description.step),
-      medium_viscosity_over_dt_(description.medium_viscosity / description.step) {
+      medium_viscosity_over_dt_(description.medium_viscosity / description.step),
+      in_medium_(description.has_medium()) {
   CORDIS_ASSERT(!layout.is_by_axis() || description.integrator == IntegratorKind::kCordis);
   const double dt = description.step;
 
@@ -34,7 +35,11 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
     if (mat.kind != MatKind::kMass) continue;
 
     dt2_over_mass_[i] = dt * dt / mat.mass;
-    velocity_retention_[i] = 1.0 - dt * description.medium_viscosity / mat.mass;
+    velocity_retention_[i] = 1.0 - dt * description.medium_viscosity_on(mat) / mat.mass;
+    if (mat.medium_viscosity >= 0.0) {
+      own_viscosity_over_dt_.resize(count(), medium_viscosity_over_dt_);
+      own_viscosity_over_dt_[i] = mat.medium_viscosity / dt;
+    }
     if (masses.empty() || masses.back().last != i) masses.push_back({i, i});
     masses.back().last = i + 1;
     if (!mat.weightless || description.gravity.isZero(0.0)) continue;
@@ -101,15 +106,21 @@ void MatArray::move_only(std::span<const Range> rows) noexcept {
   list_by_weight(rows, moving_);
 }
 
-/// Splits rows into rows of masses of one weight. The list has room.
+/// True if two masses have one weight and one medium.
+bool MatArray::are_alike(std::size_t a, std::size_t b) const noexcept {
+  return (weightless_.empty() || weightless_[a] == weightless_[b]) &&
+         (own_viscosity_over_dt_.empty() || own_viscosity_over_dt_[a] == own_viscosity_over_dt_[b]);
+}
+
+/// Splits rows into rows of masses of one weight and one medium. The list has room.
 void MatArray::list_by_weight(std::span<const Range> rows,
                               std::vector<Range>& listed) const noexcept {
   listed.assign(rows.begin(), rows.end());
-  if (weightless_.empty()) return;
+  if (weightless_.empty() && own_viscosity_over_dt_.empty()) return;
   listed.clear();
   for (const Range& row : rows) {
     for (std::size_t i = row.first; i < row.last; ++i) {
-      if (i == row.first || weightless_[i] != weightless_[i - 1]) listed.push_back({i, i});
+      if (i == row.first || !are_alike(i, i - 1)) listed.push_back({i, i});
       listed.back().last = i + 1;
     }
   }
@@ -121,10 +132,9 @@ void MatArray::halt(std::uint32_t mat) noexcept {
 }
 
 AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
-  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
   const Advance advance_by_axis =
-      in_medium ? kernel.advance_by_axis_in_medium : kernel.advance_by_axis;
-  const Advance advance_by_mat = in_medium ? kernel.advance_in_medium : kernel.advance;
+      in_medium_ ? kernel.advance_by_axis_in_medium : kernel.advance_by_axis;
+  const Advance advance_by_mat = in_medium_ ? kernel.advance_in_medium : kernel.advance;
   bool all_finite = true;
   AdvanceReport report = advance_rows(layout_.is_by_axis() ? advance_by_axis : advance_by_mat,
                                       nullptr, 0.5, all_finite);
@@ -141,10 +151,10 @@ AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
 
 AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
                                     AlignedVector<double>& extrapolated) noexcept {
-  const bool in_medium = medium_viscosity_over_dt_ > 0.0;
   bool all_finite = true;
-  AdvanceReport report = advance_rows(in_medium ? kernel.extrapolate_in_medium : kernel.extrapolate,
-                                      extrapolated.data(), 1.0, all_finite);
+  AdvanceReport report =
+      advance_rows(in_medium_ ? kernel.extrapolate_in_medium : kernel.extrapolate,
+                   extrapolated.data(), 1.0, all_finite);
   if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
 }
@@ -180,7 +190,7 @@ AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated, 
   for (const Range& range : moving_) {
     choose_rows(row, range);
     const AdvanceResult result = advance_row(row);
-    report.medium_work += share * medium_viscosity_over_dt_ * result.moved_product;
+    report.medium_work += share * viscosity_over_dt(range.first) * result.moved_product;
     all_finite = all_finite && result.all_finite;
   }
   return report;
@@ -240,18 +250,21 @@ void MatArray::find_displacements(AlignedVector<double>& displacement) const noe
 
 double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
                                      AlignedVector<double>& kick) const noexcept {
-  const double dt_viscosity = medium_viscosity_over_dt_ * dt_ * dt_;
-  double product = 0.0;
+  double taken = 0.0;
   std::fill(kick.begin(), kick.end(), 0.0);
   for (const Range& range : masses_) {
+    const double viscosity_over_dt = this->viscosity_over_dt(range.first);
+    const double dt_viscosity = viscosity_over_dt * dt_ * dt_;
+    double product = 0.0;
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
       column(kick, i) = dt_ * dt_ * force(static_cast<std::uint32_t>(i)) +
                         mass_[i] * weight_step(i) - dt_viscosity * moved;
       product += moved.x() * moved.x() + moved.y() * moved.y() + moved.z() * moved.z();
     }
+    taken += 0.5 * viscosity_over_dt * product;
   }
-  return 0.5 * medium_viscosity_over_dt_ * product;
+  return taken;
 }
 
 void MatArray::add_forces(const AlignedVector<double>& more) noexcept {

@@ -107,7 +107,7 @@ class MatArray {
   }
   /// What the medium does to a mass at x(n) - dt v(n) [N].
   Vec3 force_of_medium(std::uint32_t mat, const Vec3& extrapolated) const noexcept {
-    return medium_viscosity_over_dt_ * (extrapolated - position(mat));
+    return viscosity_over_dt(mat) * (extrapolated - position(mat));
   }
   /// Adds to the forces on all MATs, 4 x N.
   void add_forces(const AlignedVector<double>& more) noexcept;
@@ -160,6 +160,11 @@ class MatArray {
   MassColumns columns(double* extrapolated) noexcept;
   void choose_rows(MassColumns& columns, const Range& range) const noexcept;
   void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
+  bool are_alike(std::size_t a, std::size_t b) const noexcept;
+  /// Z of the medium on a mass over dt [N/m].
+  double viscosity_over_dt(std::size_t mat) const noexcept {
+    return own_viscosity_over_dt_.empty() ? medium_viscosity_over_dt_ : own_viscosity_over_dt_[mat];
+  }
   Vec3 weight_step(std::size_t mat) const noexcept {
     return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
   }
@@ -185,12 +190,14 @@ class MatArray {
   std::vector<double> mass_;                  // [kg], 0 unless a mass
   std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
   std::vector<std::uint8_t> driven_;          // by MAT; empty: none has a driven position
-  std::vector<Range> masses_;                 // rows of neighbouring masses, of one weight
-  std::vector<Range> moving_;                 // those that are moved
-  std::vector<std::uint32_t> ports_;          // MATs that move_port() moves
-  double dt_;                                 // [s]
-  Vec3 weight_step_;                          // gravity * dt^2 [m]
-  double medium_viscosity_over_dt_;           // Z / dt [N/m]
+  std::vector<Range> masses_;         // rows of neighbouring masses, of one weight and one medium
+  std::vector<Range> moving_;         // those that are moved
+  std::vector<std::uint32_t> ports_;  // MATs that move_port() moves
+  double dt_;                         // [s]
+  Vec3 weight_step_;                  // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;   // Z / dt [N/m]
+  std::vector<double> own_viscosity_over_dt_;  // by MAT; empty: all have that of the network
+  bool in_medium_;                             // something is taken by it
   bool forces_are_present_ = false;
 };
 

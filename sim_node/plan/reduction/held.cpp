@@ -37,6 +37,7 @@ Held held_in(const scene::Scene& scene) {
   std::vector<bool> handles(network.mats.size());
   for (const scene::Port& port : scene.ports) {
     held.mats[port.mat] = held.mats[port.tool] = true;
+    for (const scene::BodyMass& mass : port.body) held.mats[mass.mat] = true;
     handles[port.mat] = port.mat != port.tool;
   }
   for (std::size_t l = 0; l < network.links.size(); ++l) {

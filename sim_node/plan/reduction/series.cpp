@@ -94,7 +94,7 @@ class SeriesReduction {
     if (links_at_[mat].size() != 2) {
       return "it has " + config::count_text(links_at_[mat].size(), "link") + " instead of 2";
     }
-    if (network_.medium_viscosity > 0.0) return "the medium acts on it";
+    if (network_.medium_viscosity_on(network_.mats[mat]) > 0.0) return "the medium acts on it";
     std::array<Link, 2> ends{network_.links[links_at_[mat][0]], network_.links[links_at_[mat][1]]};
     if (ends[0].mat_b != mat) turn(ends[0]);
     if (ends[1].mat_a != mat) turn(ends[1]);

@@ -89,6 +89,7 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
   for (scene::Port& port : scene.ports) {
     of_mats.apply(port.mat);
     of_mats.apply(port.tool);
+    for (scene::BodyMass& mass : port.body) of_mats.apply(mass.mat);
   }
   const auto renumber = [&](engine::Variable& variable) {
     if (is_of_one_mat(variable)) of_mats.apply(variable.index);

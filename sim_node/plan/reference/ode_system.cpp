@@ -207,9 +207,9 @@ void OdeSystem::rate(const Values& values, Values& rate) {
       acceleration.setZero();
       continue;
     }
-    acceleration =
-        (acceleration + held_[i] - network_.medium_viscosity * v) / network_.mats[i].mass +
-        network_.gravity_on(network_.mats[i]);
+    acceleration = (acceleration + held_[i] - network_.medium_viscosity_on(network_.mats[i]) * v) /
+                       network_.mats[i].mass +
+                   network_.gravity_on(network_.mats[i]);
   }
 }
 

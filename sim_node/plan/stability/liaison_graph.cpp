@@ -221,9 +221,10 @@ void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
 
 LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_factor) {
   LiaisonGraph graph;
-  graph.medium_viscosity = network.medium_viscosity;
   for (const engine::Mat& mat : network.mats) {
-    graph.inverse_mass.push_back(mat.kind == engine::MatKind::kMass ? 1.0 / mat.mass : 0.0);
+    const bool is_mass = mat.kind == engine::MatKind::kMass;
+    graph.inverse_mass.push_back(is_mass ? 1.0 / mat.mass : 0.0);
+    graph.medium_viscosity.push_back(is_mass ? network.medium_viscosity_on(mat) : 0.0);
   }
   graph.edges.reserve(network.links.size() + network.state_links.size() +
                       network.maxwell_links.size());

@@ -59,8 +59,8 @@ struct LiaisonGraph {
   std::vector<double> inverse_mass;  ///< per MAT [1/kg]; 0 for fixed points and port masses
   std::vector<Edge> edges;
   std::vector<ContactBound> crowds;
-  double medium_viscosity = 0.0;  ///< on every mass [N s/m]
-  bool bounded = true;            ///< false: a law has no largest slope of its own; see Reach
+  std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
+  bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.

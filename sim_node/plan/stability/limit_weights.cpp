@@ -83,7 +83,7 @@ LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
     crowd.stiffness *= weights.stiffness;
     crowd.viscosity *= weights.viscosity;
   }
-  graph.medium_viscosity *= weights.link_viscosity;
+  for (double& viscosity : graph.medium_viscosity) viscosity *= weights.link_viscosity;
   return graph;
 }
 

@@ -34,7 +34,7 @@ PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
       add(count, crowd.stiffness, crowd.viscosity, crowd.bounded);
     }
   }
-  if (graph.inverse_mass[mat] > 0.0) load.viscosity += graph.medium_viscosity;
+  load.viscosity += graph.medium_viscosity[mat];
   return load;
 }
 

@@ -125,13 +125,14 @@ Tangent pressed_alone(const engine::LinkState& state, const engine::LawPoint& po
 
 StartTangent::StartTangent(const engine::NetworkDescription& network)
     : root_of_inverse_mass_(static_cast<Eigen::Index>(network.mats.size())),
-      medium_viscosity_(network.medium_viscosity),
+      medium_viscosity_(static_cast<Eigen::Index>(network.mats.size())),
       dimension_(network.dimension),
       has_limit_(!engine::damps_implicitly(network) || !engine::solves_stiff_friction(network)) {
   for (std::size_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
     root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
         mat.kind == engine::MatKind::kMass ? 1.0 / std::sqrt(mat.mass) : 0.0;
+    medium_viscosity_[static_cast<Eigen::Index>(i)] = network.medium_viscosity_on(mat);
   }
   const LimitWeights weights = limit_weights(network, Limit::kDiverging);
   medium_viscosity_ *= weights.link_viscosity;
@@ -224,7 +225,7 @@ void StartTangent::add_vector_spring(const engine::Link& link, double stiffness,
 StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_factor,
                                           double viscosity_factor, double step) const {
   const Columns moved = x * root_of_inverse_mass_.asDiagonal();
-  Columns forces = viscosity_factor * medium_viscosity_ * moved;
+  Columns forces = viscosity_factor * moved * medium_viscosity_.asDiagonal();
   for (const Part& part : parts_) {
     const Eigen::Vector3d apart = moved.col(part.mat_b) - moved.col(part.mat_a);
     double along = part.along;

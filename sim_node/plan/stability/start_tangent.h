@@ -57,7 +57,7 @@ class StartTangent {
 
   std::vector<Part> parts_;
   Eigen::RowVectorXd root_of_inverse_mass_;
-  double medium_viscosity_;
+  Eigen::RowVectorXd medium_viscosity_;  // per MAT
   int dimension_;
   bool has_limit_;
 };

@@ -38,13 +38,13 @@ Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
       rows.viscosity[mat] += crowd.viscosity * sum;
     }
   }
-  for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity * x[i];
+  for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity[i] * x[i];
   return rows;
 }
 
 /// The strongest liaison at a mass, at this step.
 std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t mat, double step) {
-  double most = graph.medium_viscosity * 2.0 * step;
+  double most = graph.medium_viscosity[mat] * 2.0 * step;
   std::optional<LiaisonId> strongest;
   const auto consider = [&](double stiffness, double viscosity, LiaisonId id) {
     const double weight = step * step * stiffness + 2.0 * step * viscosity;
@@ -154,7 +154,8 @@ StepBound edge_bound(const LiaisonGraph& graph) {
   const std::size_t count = graph.inverse_mass.size();
   Rows sums = times(graph, std::vector<double>(count, 0.5));
   for (std::size_t i = 0; i < count; ++i) {
-    sums.viscosity[i] = (sums.viscosity[i] + 0.5 * graph.medium_viscosity) * graph.inverse_mass[i];
+    sums.viscosity[i] =
+        (sums.viscosity[i] + 0.5 * graph.medium_viscosity[i]) * graph.inverse_mass[i];
     sums.stiffness[i] *= graph.inverse_mass[i];
   }
   StepBound bound;

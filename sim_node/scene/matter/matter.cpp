@@ -80,6 +80,23 @@ bool check_space(config::MappingReader& reader, const MatterKind& kind, int spac
   return false;
 }
 
+/// How much the medium takes from each mass of an entry, where that is its own.
+void read_medium(config::MappingReader& reader, GeneratedMatter& matter) {
+  constexpr const char* kKey = "medium_viscosity_n_s_per_m";
+  const bool moves = std::ranges::any_of(
+      matter.mats, [](const auto& mat) { return mat.kind == engine::MatKind::kMass; });
+  if (!moves && !reader.has(kKey)) return;
+  const double viscosity = reader.optional_number(kKey, 0.0, Range::not_negative());
+  if (!reader.has(kKey)) return;
+  if (!moves) {
+    reader.error_at(kKey, "what is fixed or driven feels no medium");
+    return;
+  }
+  for (engine::Mat& mat : matter.mats) {
+    if (mat.kind == engine::MatKind::kMass) mat.medium_viscosity = viscosity;
+  }
+}
+
 }  // namespace
 
 Layout read_layout(config::MappingReader& reader) {
@@ -124,6 +141,7 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   source.needs_no_mass = is_fixed || (reader.has("driven") && !pushes);
   GeneratedMatter matter = kind.read(source);
   if (is_fixed) std::ranges::for_each(matter.mats, fix);
+  if (matter.surfaces.empty()) read_medium(reader, matter);
   const bool is_led = spec && spec->kind != DriveSpec::Kind::kForce;
   if (takes_start(reader, kind)) {
     const StartSpec written = read_start(reader, space, kind.read == read_points, problems);

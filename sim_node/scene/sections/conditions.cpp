@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "node/config/nearest_word.h"
+#include "node/config/place_set.h"
 #include "sim_node/scene/language/quantity.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/sections/quantity_words.h"
@@ -95,7 +95,7 @@ class ConditionReader {
   /// One problem for each place, however many links a liaison has.
   void fail(const std::string& message, const std::string& hint) {
     const config::Place& place = reference_->place;
-    const bool is_first = failed_.insert({place.file, place.line, place.column}).second;
+    const bool is_first = failed_.add(place);
     if (is_quiet_ || !is_first) return;
     assembly_.problems.error(place, message, hint);
   }
@@ -130,8 +130,7 @@ class ConditionReader {
   }
 
   Instruction of_something() {
-    const config::Place& place = reference_->place;
-    if (failed_.contains({place.file, place.line, place.column})) return {};  // in another copy
+    if (failed_.has(reference_->place)) return {};  // in another copy
     // of a state, the word beside it reports what is wrong with the link
     is_quiet_ = !reference_->state.empty();
     const Instruction instruction = read_something();
@@ -253,7 +252,7 @@ class ConditionReader {
   Assembly& assembly_;
   const std::vector<Signal>& signals_;
   std::map<Variable, std::uint32_t, InOrder> numbers_;  // of the variables of the network
-  std::set<std::tuple<std::string, int, int>> failed_;  // places, reported but for quiet ones
+  config::PlaceSet failed_;                             // reported but for quiet ones
   bool is_quiet_ = false;
   const VariableReference* reference_ = nullptr;  // that is read
   std::string scope_;                             // of its link

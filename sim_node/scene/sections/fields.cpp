@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sim_node/scene/matter/point.h"
-#include "sim_node/scene/naming.h"
 
 namespace cordis::scene {
 
@@ -72,10 +71,7 @@ WorldFields read_world(const Value& section, Scene& scene, config::Problems& pro
     }
     if (flows) fields.flow = read_field(reader, "flow_m_per_s", space, parameters, problems);
   }
-  if (flows && scene.network.medium_viscosity == 0.0 && reader.ok()) {
-    reader.error_at("flow_m_per_s", "a medium that flows needs a viscosity_n_s_per_m > 0 in world");
-  }
-  fields.place = reader.place_of(gravity_changes ? "gravity_m_per_s2" : "flow_m_per_s");
+  fields.flow_place = reader.place_of("flow_m_per_s");
   reader.finish();
   return fields;
 }
@@ -87,20 +83,18 @@ void add_fields(const WorldFields& fields, Scene& scene, config::Problems& probl
   const std::optional<std::uint32_t> flow = add_function(fields.flow, network);
   std::vector<engine::Drive> drives;
   auto written = network.drives.begin();
+  if (flow && !network.has_medium() && !problems.has_errors()) {
+    problems.error(fields.flow_place,
+                   "a medium that flows needs a viscosity_n_s_per_m > 0 in world, or a "
+                   "medium_viscosity_n_s_per_m > 0 of matter");
+  }
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
-    const bool is_driven = written != network.drives.end() && written->mat == i;
-    if (is_driven) drives.push_back(*written++);
-    const bool falls = gravity && !mat.weightless;
-    if (mat.kind != MatKind::kMass || !(mat.mass > 0.0) || (!falls && !flow)) continue;
-    if (is_driven) {
-      problems.error(fields.place, call_mat(scene, i).name +
-                                       " is pushed by 'force_n', and cannot be pushed by gravity "
-                                       "that changes or by a flow as well");
-      return;
-    }
-    if (falls) drives.push_back(push_with(i, *gravity, mat.mass));
-    if (flow) drives.push_back(push_with(i, *flow, network.medium_viscosity));
+    while (written != network.drives.end() && written->mat == i) drives.push_back(*written++);
+    if (mat.kind != MatKind::kMass || !(mat.mass > 0.0)) continue;
+    const double viscosity = network.medium_viscosity_on(mat);
+    if (gravity && !mat.weightless) drives.push_back(push_with(i, *gravity, mat.mass));
+    if (flow && viscosity > 0.0) drives.push_back(push_with(i, *flow, viscosity));
   }
   network.drives = std::move(drives);
 }

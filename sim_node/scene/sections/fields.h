@@ -12,14 +12,14 @@ namespace cordis::scene {
 struct WorldFields {
   std::optional<AxisFormulas> gravity;  ///< [m/s^2]; nothing where it is constant
   std::optional<AxisFormulas> flow;     ///< velocity of the medium [m/s]; nothing where it rests
-  config::Place place;                  ///< where the first is written
+  config::Place flow_place;             ///< where it is written
 };
 
 /// Reads `world`. What is constant goes into the network of the scene.
 WorldFields read_world(const config::Value& section, Scene& scene, config::Problems& problems);
 
-/// Pushes each mass with m g(t) + Z u(t), Z being the viscosity of the medium. A mass that is pushed
-/// already is a problem. Precondition: all MATs are there.
+/// Pushes each mass with m g(t) + Z u(t), Z being the viscosity of the medium on it, beside what pushes it
+/// already. A flow without viscosity is a problem. Precondition: all MATs are there.
 void add_fields(const WorldFields& fields, Scene& scene, config::Problems& problems);
 
 }  // namespace cordis::scene

@@ -1,14 +1,14 @@
 // sim_node/scene/sections/ports.cpp
 #include "sim_node/scene/sections/ports.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "node/config/max_axes.h"
 #include "node/config/name_hash.h"
+#include "node/config/place_set.h"
 #include "sim_node/scene/language/name.h"
 #include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/matter/source.h"
@@ -177,19 +177,77 @@ class PortFaults {
   explicit PortFaults(config::Problems& problems) : problems_(problems) {}
 
   void add(const config::Place& place, const std::string& message, const std::string& hint = {}) {
-    if (!reported_.emplace(place.file, place.line, place.column).second) return;
-    problems_.error(place, message, hint);
+    if (reported_.add(place)) problems_.error(place, message, hint);
   }
 
  private:
   config::Problems& problems_;
-  std::set<std::tuple<std::string, int, int>> reported_;
+  config::PlaceSet reported_;
 };
 
 std::string port_called(const Assembly& assembly, const std::string& name) {
   const std::string port = "port '" + name + "'";
   return assembly.open_parts.empty() ? port
                                      : port + " of part '" + assembly.open_parts.back()->name + "'";
+}
+
+/// The axes of a port and where they point.
+void read_axes(config::MappingReader& reader, int space, config::Problems& problems, Port& port) {
+  if (port.axes.size() <= static_cast<std::size_t>(space)) {
+    port.directions = read_axis_directions(reader, port.axes.size(), space, problems);
+    return;
+  }
+  reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
+                              " axes, but a MAT moves in " + std::to_string(space) +
+                              (space == 1 ? " direction" : " directions") +
+                              " in a scene of space " + std::to_string(space));
+  reader.optional_value("along");
+}
+
+/// The masses of a body, and where its centre of mass is. @return false after a problem
+bool read_body(Assembly& assembly, config::MappingReader& reader, Port& port) {
+  const std::optional<Selection> picked = select(reader.optional_value("of"), reader.name_of("of"),
+                                                 false, assembly.names, assembly.problems);
+  if (!picked) return false;
+  const std::vector<engine::Mat>& mats = assembly.scene.network.mats;
+  double mass = 0.0;
+  for (const std::uint32_t mat : picked->indices) {
+    if (mats[mat].kind != engine::MatKind::kMass) {
+      reader.error_at("of", "a port moves masses, and '" + assembly.names.word_of(mat, false) +
+                                "' is fixed, driven or held by a device");
+      return false;
+    }
+    mass += mats[mat].mass;
+  }
+  if (!(mass > 0.0)) return false;  // what has no mass has a problem of its own
+  port.rest = Vec3::Zero();
+  for (const std::uint32_t mat : picked->indices) {
+    port.body.push_back({mat, mats[mat].mass / mass});
+    port.rest += port.body.back().share * mats[mat].position;
+  }
+  const auto farther = [&](const BodyMass& a, const BodyMass& b) {
+    return (mats[a.mat].position - port.rest).squaredNorm() <
+           (mats[b.mat].position - port.rest).squaredNorm();
+  };
+  port.mat = port.tool = std::ranges::min_element(port.body, farther)->mat;
+  return true;
+}
+
+/// A port on a whole body: no MAT of its own, and no coupling.
+void read_port_of_body(Assembly& assembly, const Value::Entry& entry, config::MappingReader& reader,
+                       Port port, std::size_t errors_before) {
+  if (port.role == Role::kMass) {
+    reader.error_at("role", "a body is pushed, so its port has the role liaison",
+                    "in role mass a tool of its own touches the body, or grasps it");
+  }
+  read_axes(reader, assembly.scene.space(), assembly.problems, port);
+  port.needs = read_needs(reader, assembly.problems);
+  const bool has_body = read_body(assembly, reader, port);
+  reader.finish();
+  for (Vec3& direction : port.directions) direction = assembly.placement.turn * direction;
+  const bool sound = has_body && assembly.problems.error_count() == errors_before;
+  assembly.names.add({entry.key, Named::kPort, 0, 0, sound, entry.key_place}, assembly.problems);
+  if (sound) assembly.scene.ports.push_back(std::move(port));
 }
 
 void read_port(Assembly& assembly, const Value::Entry& entry) {
@@ -206,6 +264,8 @@ void read_port(Assembly& assembly, const Value::Entry& entry) {
     port.axes.push_back(static_cast<std::uint32_t>(axis));
   const bool is_mass = reader.required_choice("role", {"mass", "liaison"}) != "liaison";
   port.role = is_mass ? Role::kMass : Role::kLiaison;
+  if (reader.has("of"))
+    return read_port_of_body(assembly, entry, reader, std::move(port), errors_before);
   port.rest = space == 1 ? optional_point(reader, "at_m", Vec3::Zero(), 1)
                          : required_point(reader, "at_m", space);
   const PointSpec ball = read_port_ball(reader, assembly.problems);
@@ -213,15 +273,7 @@ void read_port(Assembly& assembly, const Value::Entry& entry) {
   GeneratedMatter matter = port_matter(reader, port, ball.radius, space);
   if (space == 1 && !reader.has("layout_at_m"))
     assembly.ports_without_layout.push_back(assembly.mat_count());
-  if (port.axes.size() > static_cast<std::size_t>(space)) {
-    reader.error_at("axes", reader.what() + " has " + std::to_string(port.axes.size()) +
-                                " axes, but a MAT moves in " + std::to_string(space) +
-                                (space == 1 ? " direction" : " directions") +
-                                " in a scene of space " + std::to_string(space));
-    reader.optional_value("along");
-  } else {
-    port.directions = read_axis_directions(reader, port.axes.size(), space, assembly.problems);
-  }
+  read_axes(reader, space, assembly.problems, port);
   port.needs = read_needs(reader, assembly.problems);
   std::optional<Coupling> coupling = read_coupling(reader, assembly.problems);
   const double mass = own_mass > 0.0 ? own_mass : coupling.value_or(Coupling{}).mass;
@@ -264,6 +316,7 @@ void read_ports(Assembly& assembly, const Value& section) {
 
 void check_ports(Assembly& assembly) {
   PortFaults faults(assembly.problems);
+  std::map<std::uint32_t, const Port*> port_of_mass;  // of bodies
   std::map<std::uint32_t, const Port*> first_of_device;
   std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
   for (const Port& port : assembly.scene.ports) {
@@ -281,6 +334,13 @@ void check_ports(Assembly& assembly) {
       faults.add(port.place, "all ports of a device have one role, and '" + port.device +
                                  "' has the role " + word_of(first->role) + " in port '" +
                                  first->name + "'");
+    }
+    for (const BodyMass& mass : port.body) {
+      const auto [other, is_free] = port_of_mass.emplace(mass.mat, &port);
+      if (is_free) continue;
+      faults.add(port.place, "'" + assembly.names.word_of(mass.mat, false) +
+                                 "' is moved by port '" + other->second->name + "' already");
+      break;
     }
     for (const std::uint32_t axis : port.axes) {
       const auto [other, is_free] = port_of_axis.emplace(std::pair(port.device, axis), &port);

@@ -98,7 +98,7 @@ Owner owner_of(LinkKind kind) {
 bool take_own_direction(const Scene& scene, engine::Variable& variable) {
   for (const Port& port : scene.ports) {
     const bool is_here = port.mat == variable.index || port.tool == variable.index;
-    if (!is_here || port.directions.size() != 1) continue;
+    if (!is_here || !port.body.empty() || port.directions.size() != 1) continue;
     variable.direction = port.directions.front();
     if (variable.quantity == VariableKind::kPosition)
       variable.offset = variable.direction.dot(port.rest);
