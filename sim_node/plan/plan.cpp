@@ -124,6 +124,7 @@ bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison
       return true;
     case LiaisonKind::kLink:
     case LiaisonKind::kMaxwellLink:
+    case LiaisonKind::kBend:
       return false;
   }
   return false;

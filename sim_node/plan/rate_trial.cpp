@@ -27,11 +27,11 @@ double work_of_a_step(const engine::NetworkDescription& network, const std::stri
   for (const engine::SetLiaison& set : network.sets) {
     members += set.set_p.size() + set.set_q.size();
   }
-  const double once =
-      kOverhead +
-      static_cast<double>(network.mats.size() + network.links.size() +
-                          2 * network.state_links.size() + network.maxwell_links.size()) +
-      kContacts * static_cast<double>(members);
+  const double once = kOverhead +
+                      static_cast<double>(network.mats.size() + network.links.size() +
+                                          2 * network.state_links.size() +
+                                          network.maxwell_links.size() + 2 * network.bends.size()) +
+                      kContacts * static_cast<double>(members);
   return cost_of_a_step(integrator) * once;
 }
 

@@ -44,6 +44,7 @@ NetworkDescription undamped(NetworkDescription network) {
     mat.medium_viscosity = engine::Mat::kOfNetwork;
   }
   for (engine::Link& link : network.links) link.viscosity = 0.0;
+  for (engine::Bend& bend : network.bends) bend.viscosity = 0.0;
   for (engine::StateMachine& state_machine : network.state_machines) {
     state_machine = start_state_alone(state_machine);
     state_machine.friction = {};

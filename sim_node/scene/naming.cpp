@@ -37,14 +37,18 @@ Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison
       return call(scene.links, linear + with_states + index, "link");
     case engine::LiaisonKind::kSet:
       return {scene.set_names[index] + " of sets", scene.set_places[index]};
+    case engine::LiaisonKind::kBend:
+      return call(scene.bends, index, "bend");
   }
   return {};
 }
 
 std::string size_text(const Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
+  const std::string bends =
+      network.bends.empty() ? "" : config::count_text(network.bends.size(), "bend") + ", ";
   return config::count_text(network.mats.size(), "MAT") + ", " +
-         config::count_text(scene.link_count(), "link") + ", " +
+         config::count_text(scene.link_count(), "link") + ", " + bends +
          config::count_text(network.sets.size(), "set") + ", " + std::to_string(scene.space()) +
          "-D";
 }

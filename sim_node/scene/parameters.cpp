@@ -150,6 +150,8 @@ Outcome Parameters::set_of_liaison(const std::string& name, const std::string& p
   const std::vector<std::string> words = parameters_of(scene.liaisons->find(name)->definition);
   if (std::find(words.begin(), words.end(), parameter) == words.end())
     return unknown_parameter(name, parameter, words);
+  if (scene.liaisons->find(name)->law.bend)
+    return refused("what resists bending keeps its parameters while a run goes on");
 
   Target target;
   bool used = false;

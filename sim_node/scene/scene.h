@@ -150,6 +150,7 @@ struct Scene {
       matter;  ///< names of MATs in the order of the indices; a port has one MAT
   std::vector<NamedRange>
       links;  ///< names of links in the order of their numbers; see docs/language.md
+  std::vector<NamedRange> bends;          ///< names of bends, by their liaison
   std::vector<std::string> set_names;     ///< per set of the network
   std::vector<config::Place> set_places;  ///< where they are described
   std::vector<LinkGroup> link_groups;     ///< what `links` names, kind by kind

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {

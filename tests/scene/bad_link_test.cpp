@@ -60,10 +60,11 @@ INSTANTIATE_TEST_SUITE_P(
                  "a damper has no 'rest_m'", ""},
         BadScene{kLinked, "links:\n  - {liaison: s, between: [\"a[0]\", b], ^rest_mm: 1}\n",
                  "unknown key 'rest_mm' in link", "did you mean 'rest_m'?"},
-        BadScene{kLinked, "links:\n  - {liaison: s, between: [\"a[0]\", b], ^tension_n: 1}\n",
-                 "unknown key 'tension_n' in link",
-                 "known keys: liaison, name, stiffness_n_per_m, rest_m, rest, between, within, "
-                 "between_sets"},
+        BadScene{
+            kLinked, "links:\n  - {liaison: s, between: [\"a[0]\", b], ^tension_n: 1}\n",
+            "unknown key 'tension_n' in link",
+            "known keys: liaison, name, stiffness_n_per_m, rest_m, rest, along, between, within, "
+            "between_sets"},
         BadScene{kLinked,
                  "links:\n  - {liaison: s, between: [\"a[0]\", b], stiffness_n_per_m: ^-1}\n",
                  "'stiffness_n_per_m' in link must be >= 0, got -1", ""},

@@ -140,7 +140,7 @@ liaisons:
         BadScene{kHead1,
                  "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
                  "'kind' in liaison 's' must be one of spring, damper, spring_damper, maxwell, "
-                 "state_machine, parallel, got 'sprng'",
+                 "state_machine, parallel, bending, got 'sprng'",
                  "did you mean 'spring'?"},
         BadScene{kHead1,
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}

@@ -151,7 +151,9 @@ matter:
   row: {part: wheel, translate_m: [20, 0], rotate_deg: 10, repeat: {count: 2, translate_m: [1, 0], rotate_deg: 5}}
 liaisons:
   touch: {stiffness_n_per_m: 100, range_m: 0.1, pulls: false}
+  steel: {kind: bending, stiffness_n_m_per_rad: 1, viscosity_n_m_s_per_rad: 0.1, rest_rad: 0.1, length_m: 0.1}
 links:
+  - {liaison: steel, along: loop, stiffness_n_m_per_rad: 2, viscosity_n_m_s_per_rad: 0.2}
   - {liaison: touch, between_sets: [heap, floor], range_m: 0.1}
 ports:
   hand: {device: mouse, axes: [0, 1], role: mass, at_m: [0, 1], along: [x, y]}

@@ -6,7 +6,13 @@
 namespace cordis::engine {
 
 /// Which list of a NetworkDescription a liaison stands in.
-enum class LiaisonKind : std::uint8_t { kLink = 0, kStateLink = 1, kMaxwellLink = 2, kSet = 3 };
+enum class LiaisonKind : std::uint8_t {
+  kLink = 0,
+  kStateLink = 1,
+  kMaxwellLink = 2,
+  kSet = 3,
+  kBend = 4
+};
 
 struct LiaisonId {
   LiaisonKind kind = LiaisonKind::kLink;

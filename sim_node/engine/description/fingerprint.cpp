@@ -95,6 +95,13 @@ class Fingerprint {
     add(link.viscosity);
     add(link.start_force);
   }
+  void add(const Bend& bend) {
+    for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) add(mat);
+    for (const double value :
+         {bend.stiffness, bend.viscosity, bend.rest_angle, bend.length_ab, bend.length_bc}) {
+      add(value);
+    }
+  }
   void add(const SetLiaison& set) {
     add(set.state_machine);
     add_all(set.set_p);
@@ -203,6 +210,7 @@ std::uint64_t fingerprint_of(const NetworkDescription& description) {
   if (!description.contacts.empty() || std::ranges::any_of(description.variables, is_of_many)) {
     fingerprint.add_if_any(13, description.groups);
   }
+  fingerprint.add_if_any(14, description.bends);
   if (description.freeze_tolerance > 0.0) {
     fingerprint.add(std::uint64_t{7});
     fingerprint.add(description.freeze_tolerance);

@@ -99,6 +99,26 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
   require(std::isfinite(link.start_force), name + ": start force", "finite");
 }
 
+void check_bend(const NetworkDescription& description, const Bend& bend, const std::string& name) {
+  constexpr double kMaxRestAngle = 3.2;  // [rad]
+  for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) {
+    require(mat < description.mats.size(), name + ": each MAT", "one of the network");
+  }
+  require(bend.mat_a != bend.mat_b && bend.mat_b != bend.mat_c && bend.mat_a != bend.mat_c,
+          name + ": its MATs", "three different ones");
+  require(is_finite_and_at_least_zero(bend.stiffness), name + ": stiffness", "finite and >= 0");
+  require(is_finite_and_at_least_zero(bend.viscosity), name + ": viscosity", "finite and >= 0");
+  for (const double length : {bend.length_ab, bend.length_bc}) {
+    require(std::isfinite(length) && length > 0.0, name + ": rest lengths", "finite and > 0");
+    require(std::isfinite(bend.stiffness / length / length) &&
+                std::isfinite(bend.viscosity / description.step / length / length),
+            name + ": stiffness and viscosity", "small enough for its rest lengths and the step");
+  }
+  require(std::abs(bend.rest_angle) < kMaxRestAngle, name + ": rest angle", "within 3.2 rad of 0");
+  require(description.dimension < 3 || bend.rest_angle == 0.0, name + ": rest angle",
+          "0 in 3 dimensions, where a bend has no sign");
+}
+
 void check_surface(const NetworkDescription& description, const Surface& surface,
                    const std::string& name) {
   constexpr double kRounding = 1e-9;
@@ -284,6 +304,7 @@ void check(const NetworkDescription& description) {
   }
   check_each(description, description.state_links, "state link", check_state_link);
   check_each(description, description.maxwell_links, "Maxwell link", check_maxwell_link);
+  check_each(description, description.bends, "bend", check_bend);
   check_each(description, description.surfaces, "surface", check_surface);
   check_each(description, description.sets, "set", check_set);
   check_drives(description);

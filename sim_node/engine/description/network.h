@@ -78,6 +78,30 @@ struct MaxwellLink {
   double start_force = 0.0;  ///< F(0) [N], any finite value; > 0 pulls the ends together
 };
 
+/// One LIA of three MATs that resists bending at the middle one, b. With u from a to b, v from b to c, and
+/// R the turn by the rest angle, its bend vector and its moment are
+///
+///     w = v / length_bc - R u / length_ab        moment = B w + Z (change of w in the last period) / dt
+///
+/// and the forces are those of the energy B w^2 / 2. While the sides have their rest lengths, that is
+/// B (1 - cos(angle - rest)), and the moment B sin(angle - rest): linear for small bends, without a
+/// force when folded. w is linear in the positions, so no pose is singular. It also resists unequal
+/// elongations of its sides. The forces have no sum and no torque. For that, Z counts along w alone; while w
+/// is 0, in all directions.
+///
+/// In 1 dimension a MAT moves across the line on which it stands, and the angle is a difference of slopes:
+/// w = v / length_bc - u / length_ab - rest. In 3 dimensions a bend has no sign, and its rest is straight.
+struct Bend {
+  std::uint32_t mat_a = 0;
+  std::uint32_t mat_b = 0;
+  std::uint32_t mat_c = 0;
+  double stiffness = 0.0;   ///< B [N m/rad], >= 0
+  double viscosity = 0.0;   ///< Z [N m s/rad], >= 0
+  double rest_angle = 0.0;  ///< [rad], counter-clockwise from u to v; 0 in 3 dimensions
+  double length_ab = 0.0;   ///< rest length of the sides [m], > 0
+  double length_bc = 0.0;
+};
+
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
 /// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has
 /// no sign in 1 dimension either, and there is no force while it is 0. With states, each pair has
@@ -94,7 +118,7 @@ struct SetLiaison {
 };
 
 /// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by
-/// state machine and within one in the order given; Maxwell links; sets.
+/// state machine and within one in the order given; Maxwell links; bends; sets.
 struct NetworkDescription {
   int dimension = 3;  ///< 1, 2 or 3
   double step = 0.0;  ///< dt [s], > 0
@@ -111,6 +135,7 @@ struct NetworkDescription {
   std::vector<StateMachine> state_machines;
   std::vector<StateLink> state_links;
   std::vector<MaxwellLink> maxwell_links;
+  std::vector<Bend> bends;
   std::vector<SetLiaison> sets;
   std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
   std::vector<TimeFunction> time_functions;

@@ -39,6 +39,9 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
     if (what != nullptr) return refusal(LiaisonKind::kStateLink, l, what);
   }
   if (!network.maxwell_links.empty()) return refusal(LiaisonKind::kMaxwellLink, 0, "viscosity");
+  for (std::size_t l = 0; l < network.bends.size(); ++l) {
+    if (network.bends[l].viscosity > 0.0) return refusal(LiaisonKind::kBend, l, "viscosity");
+  }
   for (std::size_t s = 0; s < network.sets.size(); ++s) {
     const char* what = not_a_potential(network.state_machines[network.sets[s].state_machine]);
     if (what != nullptr) return refusal(LiaisonKind::kSet, s, what);
@@ -53,6 +56,9 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
   const auto differ = [](double u, double v) {
     return std::abs(u - v) > kRounding * std::max(std::abs(u), std::abs(v));
   };
+  if (!network.bends.empty()) {
+    return IntegratorRefusal{"stiffness against bending", LiaisonId{LiaisonKind::kBend, 0}};
+  }
   const Link* first = nullptr;
   for (std::size_t l = 0; l < network.links.size(); ++l) {
     const Link& link = network.links[l];
@@ -120,6 +126,10 @@ std::optional<IntegratorRefusal> refusal_of(const NetworkDescription& network) {
     const bool freezes = network.integrator == IntegratorKind::kCordis ||
                          network.integrator == IntegratorKind::kLeapfrog;
     if (!freezes) return IntegratorRefusal{"freezing", {}};
+    if (!network.bends.empty()) {
+      return IntegratorRefusal{"freezing together with stiffness against bending",
+                               LiaisonId{LiaisonKind::kBend, 0}};
+    }
     if (damps_implicitly(network) || solves_stiff_friction(network)) {
       return IntegratorRefusal{"freezing together with viscosities above Z dt / m = 0.3", {}};
     }

@@ -31,6 +31,7 @@ void Leapfrog::start(WorldState& world) noexcept {
   mats.set_forces_are_present(true);
   world.links.start();
   world.vector_springs.start();
+  world.bends.forget_viscous_forces();
   world.state_links.start();
   world.sets.start();
   world.account.open(energy(world).total());

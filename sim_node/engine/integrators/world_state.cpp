@@ -75,6 +75,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),
+      bends(description()),
       sets(description(), table, pair_kernel(width)),
       log(table, std::max(kMinEventRoom, description().state_links.size())),
       outside(description()),
@@ -114,6 +115,7 @@ void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   vector_springs.add_forces(kernel, columns);
   state_links.add_forces_before_start(state_machines, table, columns);
   maxwell_links.add_held_forces(state_machines, columns);
+  bends.add_forces(columns);
   sets.add_forces(pair_step(true), columns);
 }
 
@@ -126,18 +128,19 @@ void WorldState::start_one_period_ago() noexcept {
   mats.clear_forces();
   links.start();
   vector_springs.start();
+  bends.forget_viscous_forces();
   state_links.forget_tensions();
 }
 
 double WorldState::stored_energy() noexcept {
   return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
-         maxwell_links.stored_energy() + sets.stored_energy(table);
+         maxwell_links.stored_energy() + bends.potential_energy(mats) + sets.stored_energy(table);
 }
 
 double WorldState::potential_energy() noexcept {
   return links.potential_energy(mats) + vector_springs.potential_energy(mats) +
          state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
-         sets.stored_energy(table);
+         bends.potential_energy(mats) + sets.stored_energy(table);
 }
 
 StepEnergy WorldState::work_since_last_call() const noexcept {
@@ -145,6 +148,7 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   work += vector_springs.work_since_last_call(mats);
   work += state_links.work_since_last_call(mats);
   work += maxwell_links.work_since_last_call(mats);
+  work += bends.work_since_last_call(mats);
   work += sets.work_since_last_call(mats);
   return work;
 }
@@ -178,6 +182,7 @@ void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
     energy += state_links.add_forces(state_machines, table, columns, step_count, log);
   }
   energy += add_maxwell_forces(columns);
+  energy += bends.add_forces(columns);
   energy += add_set_forces(columns);
   if (freezing) freezing->restore_forces(mats);
 }
@@ -201,6 +206,8 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
   if (step_count == 0) maxwell_links.go_back(mats);
   const double taken = add_maxwell_forces(as_it_moved).dissipated;
   if (step_count > 0) energy.dissipated += taken;  // the account begins at the moment of step 0
+  bends.forget_viscous_forces();
+  of_links += bends.add_forces(extrapolated);
   of_links += of_last_sets;
   of_links += add_set_forces(extrapolated);
   if (freezing) freezing->restore_forces(mats);
@@ -246,6 +253,7 @@ Archive WorldState::serialize(Archive archive) {
   vector_springs.serialize(archive);
   state_links.serialize(archive, table);
   maxwell_links.serialize(archive);
+  bends.serialize(archive);
   log.serialize(archive);
   account.serialize(archive);
   if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last

@@ -11,6 +11,7 @@
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/integrators/freezing.h"
 #include "sim_node/engine/integrators/integrator.h"
+#include "sim_node/engine/links/bends.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/maxwell_links.h"
 #include "sim_node/engine/links/spring_damper.h"
@@ -113,6 +114,7 @@ struct WorldState {
   StateTable table;
   StateLinkArray state_links;
   MaxwellArray maxwell_links;
+  BendArray bends;
   SetLiaisons sets;
   EventLog log;
   PortInputs outside;

@@ -86,10 +86,10 @@ LinkArrangement arrange_links(std::span<const Link> links, bool with_runs) {
 }
 
 MatLayout layout_of(const NetworkDescription& description) {
-  const bool reads_columns = description.integrator != IntegratorKind::kCordis ||
-                             description.freeze_tolerance > 0.0 ||
-                             !description.state_links.empty() ||
-                             !description.maxwell_links.empty() || !description.sets.empty();
+  const bool reads_columns =
+      description.integrator != IntegratorKind::kCordis || description.freeze_tolerance > 0.0 ||
+      !description.state_links.empty() || !description.maxwell_links.empty() ||
+      !description.bends.empty() || !description.sets.empty();
   if (reads_columns) return {};
   const std::size_t in_runs = linear_links_in_runs(description.links);
   const bool most = in_runs > 0 && 4 * in_runs >= 3 * description.links.size();

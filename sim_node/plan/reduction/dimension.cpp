@@ -63,6 +63,8 @@ bool fits_a_line(const scene::Scene& scene) {
   if (!network.state_links.empty()) return false;
   const auto rubs = [](const engine::StateMachine& one) { return one.friction.acts(); };
   if (std::ranges::any_of(network.state_machines, rubs)) return false;
+  const auto is_bent = [](const engine::Bend& bend) { return bend.rest_angle != 0.0; };
+  if (std::ranges::any_of(network.bends, is_bent)) return false;
   const auto has_sign = [](const engine::Variable& variable) {
     return variable.quantity >= engine::VariableKind::kDistance &&
            variable.quantity <= engine::VariableKind::kTension;

@@ -30,6 +30,9 @@ Held held_in(const scene::Scene& scene) {
   };
   hold_ends(network.state_links);
   hold_ends(network.maxwell_links);
+  for (const engine::Bend& bend : network.bends) {
+    held.mats[bend.mat_a] = held.mats[bend.mat_b] = held.mats[bend.mat_c] = true;
+  }
   for (const engine::SetLiaison& set : network.sets) {
     for (const std::uint32_t mat : set.set_p) held.mats[mat] = true;
     for (const std::uint32_t mat : set.set_q) held.mats[mat] = true;

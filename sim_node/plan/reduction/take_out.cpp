@@ -80,6 +80,9 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
   renumber_ends(network.links);
   renumber_ends(network.state_links);
   renumber_ends(network.maxwell_links);
+  for (engine::Bend& bend : network.bends) {
+    for (std::uint32_t* mat : {&bend.mat_a, &bend.mat_b, &bend.mat_c}) of_mats.apply(*mat);
+  }
   for (engine::SetLiaison& set : network.sets) {
     of_mats.apply(set.set_p);
     of_mats.apply(set.set_q);

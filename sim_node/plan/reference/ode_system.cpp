@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/engine/links/bend_shape.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -198,6 +200,20 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     const double force = values[2 * n + l];
     push(link.mat_a, link.mat_b, force * line.direction);
     rate[2 * n + l] = link.stiffness * (line.speed - force / link.viscosity);
+  }
+  for (const engine::Bend& bend : network_.bends) {
+    const engine::BendShape shape(bend, network_.dimension);
+    const Vec3 w = shape(position(values, bend.mat_a), position(values, bend.mat_b),
+                         position(values, bend.mat_c));
+    const Vec3 at_rest = shape(Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
+    const Vec3 rate_of_w = shape(velocity(values, bend.mat_a), velocity(values, bend.mat_b),
+                                 velocity(values, bend.mat_c)) -
+                           at_rest;
+    const double square = network_.dimension == 1 ? 0.0 : w.squaredNorm();
+    const Vec3 along = square > 0.0 ? Vec3(w * (w.dot(rate_of_w) / square)) : rate_of_w;
+    const Vec3 moment = bend.stiffness * w + bend.viscosity * along;
+    push(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
+    push(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
   }
   for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
     auto acceleration = Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(i));

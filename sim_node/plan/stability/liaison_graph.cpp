@@ -208,6 +208,19 @@ double stiffness_across_at_start(const NetworkDescription& network, const engine
   return start.distance > 0.0 ? std::max(tension, 0.0) / start.distance : 0.0;
 }
 
+/// A bend as a link along each side: |v / l - R u / k|^2 is at most (1 / k + 1 / l) (|u|^2 / k + |v|^2 / l), as
+/// equal as can be where it bends the most.
+void add_bend(const engine::Bend& bend, std::uint32_t index, LiaisonGraph& graph) {
+  const double both = 1.0 / bend.length_ab + 1.0 / bend.length_bc;
+  const LiaisonId id{LiaisonKind::kBend, index};
+  const double at_ab = both / bend.length_ab;
+  const double at_bc = both / bend.length_bc;
+  graph.edges.push_back(
+      {bend.mat_a, bend.mat_b, at_ab * bend.stiffness, at_ab * bend.viscosity, id});
+  graph.edges.push_back(
+      {bend.mat_b, bend.mat_c, at_bc * bend.stiffness, at_bc * bend.viscosity, id});
+}
+
 }  // namespace
 
 void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
@@ -227,7 +240,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     graph.medium_viscosity.push_back(is_mass ? network.medium_viscosity_on(mat) : 0.0);
   }
   graph.edges.reserve(network.links.size() + network.state_links.size() +
-                      network.maxwell_links.size());
+                      network.maxwell_links.size() + 2 * network.bends.size());
   std::uint32_t index = 0;
   for (const engine::Link& link : network.links) {
     graph.edges.push_back(
@@ -256,6 +269,9 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     }
     graph.edges.push_back(
         {link.mat_a, link.mat_b, link.stiffness, 0.0, {LiaisonKind::kMaxwellLink, index++}});
+  }
+  for (index = 0; index < network.bends.size(); ++index) {
+    add_bend(network.bends[index], index, graph);
   }
   for (index = 0; index < network.sets.size(); ++index) add_set(network, index, reach, graph);
   return graph;

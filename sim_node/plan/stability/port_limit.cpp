@@ -25,6 +25,8 @@ PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
   };
   for (const Edge& edge : graph.edges) {
     if (edge.mat_a != mat && edge.mat_b != mat) continue;
+    if (least && edge.liaison.kind == LiaisonKind::kBend)
+      continue;  // its edges are a bound from above
     add(1.0, edge.stiffness, edge.viscosity, edge.bounded);
   }
   for (const ContactBound& crowd : graph.crowds) {

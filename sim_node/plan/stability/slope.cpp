@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/start_point.h"
 
@@ -273,6 +274,9 @@ double energy_brought(const engine::NetworkDescription& network) {
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     energy += 0.5 * link.start_force * link.start_force / link.stiffness;
+  }
+  for (const engine::Bend& bend : network.bends) {
+    energy += 0.5 * bend.stiffness * engine::bend_at_start(network, bend).squaredNorm();
   }
   return energy + weight * extent_of(network);
 }

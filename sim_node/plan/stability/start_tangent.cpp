@@ -161,9 +161,27 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
         weights.stiffness * std::min(link.start_force, 0.0), 0.0,
         weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
   }
+  for (const engine::Bend& bend : network.bends) {
+    add_bend(network, bend, weights.stiffness, weights.viscosity);
+  }
   for (const engine::SetLiaison& set : network.sets) {
     add_set(network, set, weights.stiffness, weights.viscosity);
   }
+}
+
+/// The direction of a straight one is that of what bends it: then nothing is sure of its viscosity.
+void StartTangent::add_bend(const engine::NetworkDescription& network, const engine::Bend& bend,
+                            double stiffness_weight, double viscosity_weight) {
+  constexpr double kStraight = 1e-9;
+  engine::Bend turn = bend;
+  if (dimension_ == 1) turn.rest_angle = 0.0;
+  const engine::Vec3 w = engine::bend_at_start(network, bend);
+  const bool is_bent = w.norm() > kStraight;
+  engine::Vec3 direction = engine::Vec3::UnitX();
+  if (dimension_ > 1)
+    direction = is_bent ? Eigen::Vector3d(w.normalized()) : Eigen::Vector3d::Zero();
+  bends_.push_back({bend, engine::BendShape(turn, dimension_), direction,
+                    stiffness_weight * bend.stiffness, viscosity_weight * bend.viscosity});
 }
 
 void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
@@ -241,6 +259,19 @@ StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_fac
     forces.col(part.mat_b) += force;
     forces.col(part.mat_a) -= force;
   }
+  for (const BendPart& part : bends_) {
+    const engine::Bend& bend = part.bend;
+    const Eigen::Vector3d w =
+        part.turn(moved.col(bend.mat_a), moved.col(bend.mat_b), moved.col(bend.mat_c));
+    const Eigen::Vector3d moment =
+        stiffness_factor * part.stiffness * w +
+        viscosity_factor * part.viscosity * part.direction.dot(w) * part.direction;
+    const Eigen::Vector3d on_a = part.turn.force_on_a(moment);
+    const Eigen::Vector3d on_c = part.turn.force_on_c(moment);
+    forces.col(bend.mat_a) -= on_a;
+    forces.col(bend.mat_c) -= on_c;
+    forces.col(bend.mat_b) += on_a + on_c;
+  }
   return forces * root_of_inverse_mass_.asDiagonal();
 }
 
@@ -279,8 +310,8 @@ double StartTangent::diverging_step() const {
   bool is_sure = true;
   int left =
       std::max(kFewestIterations,
-               static_cast<int>(kClimbWork /
-                                static_cast<double>(parts_.size() + root_of_inverse_mass_.size())));
+               static_cast<int>(kClimbWork / static_cast<double>(parts_.size() + bends_.size() +
+                                                                 root_of_inverse_mass_.size())));
   for (int round = 0; round < kStepRounds; ++round) {
     const double period = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
     const double stiffness = dot(x, times(x, 1.0, 0.0, period));

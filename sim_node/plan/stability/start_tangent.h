@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/bend_shape.h"
 
 namespace cordis::plan {
 
@@ -38,8 +39,18 @@ class StartTangent {
     double viscosity;
     double maxwell_viscosity;  // 0 unless a Maxwell element, whose stiffness is `along`
   };
+  /// A liaison of three MATs: stiffness in all directions, viscosity along one.
+  struct BendPart {
+    engine::Bend bend;
+    engine::BendShape turn;  // of the bend, without its rest angle in 1 dimension
+    Eigen::Vector3d direction;
+    double stiffness;
+    double viscosity;
+  };
   using Columns = Eigen::Matrix3Xd;
 
+  void add_bend(const engine::NetworkDescription& network, const engine::Bend& bend,
+                double stiffness_weight, double viscosity_weight);
   void add(std::uint32_t a, std::uint32_t b, const engine::NetworkDescription& network,
            double along, double tension, double viscosity, double maxwell_viscosity);
   void add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
@@ -56,6 +67,7 @@ class StartTangent {
   int climb(Columns& x, double step, int max_iterations) const;
 
   std::vector<Part> parts_;
+  std::vector<BendPart> bends_;
   Eigen::RowVectorXd root_of_inverse_mass_;
   Eigen::RowVectorXd medium_viscosity_;  // per MAT
   int dimension_;

@@ -29,13 +29,14 @@ struct LiaisonKind {
   bool has_stiffness;
   bool has_viscosity;
 };
-constexpr std::array<LiaisonKind, 6> kLiaisonKinds{{
+constexpr std::array<LiaisonKind, 7> kLiaisonKinds{{
     {"spring", true, false},
     {"damper", false, true},
     {"spring_damper", true, true},
     {"maxwell", true, true},
     {"state_machine", true, true},
     {"parallel", false, false},
+    {kBending, false, false},
 }};
 
 /// The kind that a liaison is of by its keys; empty when it must be written.
@@ -88,6 +89,8 @@ class LiaisonReader {
       law = read_parallel(reader, parameters);
     } else if (kind == "state_machine") {
       law = read_states(reader, parameters);
+    } else if (kind == kBending) {
+      law.bend = read_bend_law(reader, space_, parameters, problems_);
     } else {
       law = read_linear(reader, kind, parameters);
     }
@@ -190,6 +193,12 @@ class LiaisonReader {
       const std::size_t errors_before = problems_.error_count();
       const LinkLaw part = read_part(item, reader.what(), parameters);
       if (problems_.error_count() != errors_before) return {};
+      if (part.bend) {
+        problems_.error(item.place(),
+                        "a bending liaison joins three MATs, so it stands in no 'parallel'",
+                        "write a link of its own with it");
+        return {};
+      }
       std::vector<LinkLaw> all = part.beside;
       all.insert(all.begin(), part);
       for (LinkLaw& one : all) {
@@ -278,7 +287,8 @@ std::vector<std::string> parameters_of(const Value& definition) {
   for (const Value::Entry& entry : definition.find("parameters").entries())
     names.push_back(entry.key);
   if (definition.find("parallel").exists() || definition.find("states").exists()) return names;
-  for (const char* key : {kStiffness, kViscosity, "force_limit_n"}) {
+  for (const char* key :
+       {kStiffness, kViscosity, "force_limit_n", kBendStiffness, kBendViscosity}) {
     const bool known = std::find(names.begin(), names.end(), key) != names.end();
     if (definition.find(key).exists() && !known) names.emplace_back(key);
   }

@@ -91,7 +91,7 @@ void refuse_foreign_parameters(MappingReader& reader, const Value& definition,
     refuse(kRest);
     refuse(kTension);
   }
-  if (kind == "maxwell") {
+  if (kind == "maxwell" || kind == kBending) {
     refuse(kRest);
     refuse(kTension);
   }
@@ -101,7 +101,8 @@ void refuse_foreign_parameters(MappingReader& reader, const Value& definition,
 ParameterOverrides read_overrides(MappingReader& reader, const std::vector<std::string>& words) {
   ParameterOverrides overrides;
   for (const std::string& word : words) {
-    const bool has_range = word == kStiffness || word == kViscosity;
+    const bool has_range = word == kStiffness || word == kViscosity || word == kBendStiffness ||
+                           word == kBendViscosity;
     reader.optional_value(word);
     if (!reader.has(word)) continue;
     overrides[word] = reader.required_number(word, has_range ? Range::not_negative() : Range{});
@@ -214,6 +215,9 @@ std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Lia
     law = law_of_liaison(use, name, *liaison);
     if (law && place == LawPlace::kMatter && rubs(*law))
       reader.error_at("liaison", "friction acts in liaisons of sets, not between neighbours");
+    if (law && place == LawPlace::kMatter && law->bend)
+      reader.error_at("liaison", "a bending liaison joins three MATs, not two neighbours",
+                      "write a link with it: along: matter");
   } else if (!name.exists() && place == LawPlace::kMatter) {
     law.emplace();
     law->stiffness = reader.required_number(kStiffness, Range::not_negative());

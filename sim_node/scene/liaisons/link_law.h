@@ -10,6 +10,7 @@
 #include "node/config/mapping_reader.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/scene/language/formula.h"
+#include "sim_node/scene/liaisons/bend_law.h"
 
 namespace cordis::scene {
 
@@ -50,6 +51,7 @@ struct LinkLaw {
   std::string liaison;                        ///< the name of that it was made from, or empty
   ParameterOverrides overrides;               ///< what the link gave to it
   std::vector<LinkLaw> beside;                ///< the others of a parallel liaison
+  std::optional<BendLaw> bend;                ///< then nothing above says what it is
 };
 
 inline constexpr const char* kStiffness = "stiffness_n_per_m";

@@ -71,6 +71,19 @@ void place_grid(GeneratedMatter& matter, const GridShape& shape, const PointSpec
   }
 }
 
+/// The rows, then the columns.
+std::vector<std::vector<std::uint32_t>> lines_of(const GridShape& shape) {
+  std::vector<std::vector<std::uint32_t>> lines(
+      static_cast<std::size_t>(shape.rows + shape.columns));
+  for (long row = 0; row < shape.rows; ++row) {
+    for (long column = 0; column < shape.columns; ++column) {
+      lines[static_cast<std::size_t>(row)].push_back(shape.index(row, column));
+      lines[static_cast<std::size_t>(shape.rows + column)].push_back(shape.index(row, column));
+    }
+  }
+  return lines;
+}
+
 /// Along the rows, then along the columns.
 std::vector<Edge> sides_of(const GridShape& shape) {
   std::vector<Edge> edges;
@@ -109,6 +122,7 @@ GeneratedMatter read_grid(Source& source) {
   if (!law || !reader.ok()) return matter;
 
   place_grid(matter, shape, spec, border, source.space);
+  matter.lines = lines_of(shape);
   join_all(source, matter, *law, sides_of(shape));
   if (shear) join_all(source, matter, *shear, diagonals_of(shape));
   return matter;

@@ -83,6 +83,7 @@ GeneratedMatter read_points(Source& source) {
     matter.mats.push_back({MatKind::kMass, mass[i], points[i], Vec3::Zero()});
     if (fixed[i]) matter.mats.back() = {MatKind::kFixed, 0.0, points[i], Vec3::Zero()};
   }
+  matter.lines.push_back(line_of(static_cast<std::uint32_t>(count)));
   matter.radius_m = radius;
   check_points(source, matter);
   if (source.space > 1) return matter;

@@ -25,6 +25,8 @@ GeneratedMatter read_ring(Source& source) {
   const double layout_radius =
       static_cast<double>(count) * layout.spacing / (2.0 * std::numbers::pi);
   std::vector<Edge> edges;
+  matter.lines.push_back(line_of(static_cast<std::uint32_t>(count)));
+  for (const std::uint32_t again : {0U, 1U}) matter.lines.back().push_back(again);
   for (std::uint32_t i = 0; i < count; ++i) {
     const double angle =
         2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);

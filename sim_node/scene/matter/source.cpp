@@ -2,6 +2,7 @@
 #include "sim_node/scene/matter/source.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace cordis::scene {
 
@@ -57,6 +58,12 @@ void add_mass(GeneratedMatter& matter, const PointSpec& spec, const Vec3& positi
 void fix(engine::Mat& mat) {
   mat.kind = MatKind::kFixed;
   mat.mass = 0.0;
+}
+
+std::vector<std::uint32_t> line_of(std::uint32_t count) {
+  std::vector<std::uint32_t> line(count);
+  std::iota(line.begin(), line.end(), 0U);
+  return line;
 }
 
 void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,

@@ -55,6 +55,9 @@ void fix(engine::Mat& mat);
 /// Two MATs of the same entry.
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
+/// The MATs from 0 on, so many, as neighbours of a line.
+std::vector<std::uint32_t> line_of(std::uint32_t count);
+
 /// Joins MATs by a law; a negative rest length where there is none is a problem.
 void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
               const std::vector<Edge>& edges);

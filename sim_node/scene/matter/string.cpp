@@ -18,6 +18,7 @@ GeneratedMatter read_string(Source& source) {
   if (!law || !reader.ok()) return matter;
 
   std::vector<Edge> edges;
+  matter.lines.push_back(line_of(static_cast<std::uint32_t>(count)));
   for (std::uint32_t i = 0; i < count; ++i) {
     const double part = static_cast<double>(i) / static_cast<double>(count - 1);
     add_mass(matter, spec, from + part * (to - from));

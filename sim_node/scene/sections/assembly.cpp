@@ -58,6 +58,10 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
   for (engine::Surface& surface : matter.surfaces) surface.mat += mat_count();
   scene.network.surfaces.insert(scene.network.surfaces.end(), matter.surfaces.begin(),
                                 matter.surfaces.end());
+  for (std::vector<std::uint32_t>& line : matter.lines) {
+    for (std::uint32_t& mat : line) mat += mat_count();
+    lines.push_back(std::move(line));
+  }
   append(matter.links, mat_count());
   scene.radius_m.insert(scene.radius_m.end(), matter.drawn_radius_m.begin(),
                         matter.drawn_radius_m.end());

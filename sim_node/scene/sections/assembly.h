@@ -95,6 +95,7 @@ struct Assembly {
   config::Problems& problems;
   std::shared_ptr<Liaisons> liaisons;
   Names names;
+  std::vector<std::vector<std::uint32_t>> lines;    ///< of MATs, along which matter may bend
   std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
   std::map<std::string, std::vector<std::uint32_t>>
       sets_of_liaisons;  ///< those without a name, by that of their liaison

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "sim_node/scene/language/name.h"
+#include "sim_node/scene/sections/bends.h"
 #include "sim_node/scene/sections/sets.h"
 
 namespace cordis::scene {
@@ -136,7 +137,13 @@ void read_link(Assembly& assembly, const Value& value) {
   LinkEntry entry{reader, name, has_name, {}, errors_before};
   entry.law = read_law(reader, LawPlace::kLink, *assembly.liaisons, assembly.scene.space(),
                        has_name ? assembly.names.full(name) : "");
-  if (reader.has("within")) {
+  const bool is_bend = entry.law && entry.law->bend;
+  const bool is_along = reader.optional_value("along").exists();
+  if (is_along && entry.law && !is_bend)
+    reader.error_at("along", "only a bending liaison acts along lines", "write between: [a, b]");
+  if (is_bend || is_along) {
+    if (is_bend) read_bends(assembly, entry);
+  } else if (reader.has("within")) {
     read_set(assembly, entry);
   } else if (reader.has("between_sets")) {
     read_two_sets(assembly, entry);

@@ -1,0 +1,28 @@
+// sim_node/engine/links/bend_shape.cpp
+#include "sim_node/engine/links/bend_shape.h"
+
+#include "sim_node/engine/expressions/elementary_functions.h"
+
+namespace cordis::engine {
+namespace {
+
+struct BendAngle {};
+using OfAngle = ElementaryFunctions<BendAngle>;
+
+}  // namespace
+
+BendShape::BendShape(const Bend& bend, int dimension) noexcept
+    : per_ab_(1.0 / bend.length_ab), per_bc_(1.0 / bend.length_bc) {
+  if (dimension == 1) offset_ = bend.rest_angle;
+  if (dimension != 2) return;
+  cosine_ = OfAngle::cos(bend.rest_angle);
+  sine_ = OfAngle::sin(bend.rest_angle);
+}
+
+Vec3 bend_at_start(const NetworkDescription& network, const Bend& bend) noexcept {
+  const auto place = [&network](std::uint32_t mat) { return network.mats[mat].position; };
+  return BendShape(bend, network.dimension)(place(bend.mat_a), place(bend.mat_b),
+                                            place(bend.mat_c));
+}
+
+}  // namespace cordis::engine

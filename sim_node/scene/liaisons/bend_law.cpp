@@ -1,0 +1,40 @@
+// sim_node/scene/liaisons/bend_law.cpp
+#include "sim_node/scene/liaisons/bend_law.h"
+
+namespace cordis::scene {
+
+BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterValues& parameters,
+                      config::Problems& problems) {
+  using config::Range;
+  constexpr double kMaxRestAngle = 3.2;  // [rad]
+  constexpr const char* kRestAngle = "rest_rad";
+  constexpr const char* kLength = "length_m";
+  BendLaw law;
+  law.stiffness =
+      required_formula(reader, kBendStiffness, Range::not_negative(), parameters, problems);
+  law.viscosity =
+      optional_formula(reader, kBendViscosity, 0.0, Range::not_negative(), parameters, problems);
+  law.rest_angle = optional_formula(reader, kRestAngle, 0.0, {-kMaxRestAngle, kMaxRestAngle},
+                                    parameters, problems);
+  for (const char* key : {"states", "start", "elasticity", "dissipation"}) {
+    if (!reader.has(key)) continue;
+    reader.optional_value(key);
+    reader.error_at(key, "a bending liaison has no " + std::string(key) + ": its law is linear");
+  }
+  if (space == 3 && law.rest_angle != 0.0) {
+    reader.error_at(
+        kRestAngle,
+        "in 3 dimensions a bend has no sign, so the rest of " + reader.what() + " is straight",
+        "a spring between the two ends holds an angle");
+  }
+  const double length =
+      optional_formula(reader, kLength, 0.0, Range::positive(), parameters, problems);
+  if (reader.has(kLength)) law.length = length;
+  if (space == 1 && !reader.has(kLength)) {
+    reader.error_at("kind", "in 1 dimension " + reader.what() + " needs a 'length_m'",
+                    "MATs move across the line on which they stand, so its length is not known");
+  }
+  return law;
+}
+
+}  // namespace cordis::scene

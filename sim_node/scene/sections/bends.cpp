@@ -1,0 +1,144 @@
+// sim_node/scene/sections/bends.cpp
+#include "sim_node/scene/sections/bends.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace cordis::scene {
+
+using config::Value;
+
+namespace {
+
+/// Three MATs, the middle one second.
+using Triple = std::array<std::uint32_t, 3>;
+
+std::optional<Selection> select_mats(Assembly& assembly, const Value& value, const char* what,
+                                     config::MappingReader& reader, const char* key) {
+  std::optional<Selection> picked = select(value, what, false, assembly.names, assembly.problems);
+  if (picked && assembly.count_surfaces(picked->indices) > 0) {
+    reader.error_at(key, "a surface does not bend");
+    return std::nullopt;
+  }
+  return picked;
+}
+
+/// One to one, or one to many.
+std::vector<Triple> triples_between(Assembly& assembly, config::MappingReader& reader) {
+  const Value between = reader.required_sequence("between");
+  if (between.exists() && between.items().size() != 3) {
+    reader.error_at("between", "a bending liaison is between 3 ends, the middle one second, got " +
+                                   std::to_string(between.items().size()));
+    return {};
+  }
+  std::vector<Selection> ends;
+  for (const Value& end : between.items()) {
+    const auto picked = select_mats(assembly, end, "an end of a link", reader, "between");
+    if (picked) ends.push_back(*picked);
+  }
+  if (ends.size() != 3) return {};
+  std::uint32_t count = 1;
+  for (const Selection& end : ends) count = std::max(count, end.count());
+  const auto fits = [count](const Selection& end) {
+    return end.count() == 1 || end.count() == count;
+  };
+  if (!std::ranges::all_of(ends, fits)) {
+    reader.error_at("between", "the 3 ends must be equally many MATs, or one");
+    return {};
+  }
+  std::vector<Triple> triples(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::size_t end = 0; end < 3; ++end) {
+      triples[i][end] = ends[end].indices[ends[end].count() == 1 ? 0 : i];
+    }
+  }
+  return triples;
+}
+
+/// Each three neighbours of a line that are all picked.
+std::vector<Triple> triples_along(Assembly& assembly, config::MappingReader& reader) {
+  const auto picked =
+      select_mats(assembly, reader.required_value("along"), "'along' in a link", reader, "along");
+  if (!picked) return {};
+  std::vector<bool> is_picked(assembly.mat_count());
+  for (const std::uint32_t mat : picked->indices) is_picked[mat] = true;
+  std::vector<Triple> triples;
+  for (const std::vector<std::uint32_t>& line : assembly.lines) {
+    for (std::size_t i = 0; i + 2 < line.size(); ++i) {
+      const Triple triple{line[i], line[i + 1], line[i + 2]};
+      const auto counts = [&is_picked](std::uint32_t mat) { return is_picked[mat]; };
+      if (std::ranges::all_of(triple, counts)) triples.push_back(triple);
+    }
+  }
+  if (triples.empty()) {
+    reader.error_at("along", "no three neighbours of a line are picked",
+                    "strings, rings, points and grids have lines; else write between: [a, b, c]");
+  }
+  return triples;
+}
+
+/// Adds a bend of a law. @return false after a problem
+bool add_bend(Assembly& assembly, const BendLaw& law, const Triple& mats,
+              config::MappingReader& reader, const char* key) {
+  const auto& [a, b, c] = mats;
+  const auto called = [&](std::uint32_t mat) { return assembly.names.word_of(mat, false); };
+  if (a == b || b == c || a == c) {
+    reader.error_at(key, "the ends of a bending liaison must differ, got '" +
+                             called(a == b || a == c ? a : b) + "' twice");
+    return false;
+  }
+  const auto& network = assembly.scene.network;
+  const auto length = [&](std::uint32_t from, std::uint32_t to) {
+    return law.length.value_or((network.mats[to].position - network.mats[from].position).norm());
+  };
+  const engine::Bend bend{
+      a, b, c, law.stiffness, law.viscosity, law.rest_angle, length(a, b), length(b, c)};
+  if (bend.length_ab <= 0.0 || bend.length_bc <= 0.0) {
+    reader.error_at(key,
+                    "'" + called(b) + "' and '" + called(bend.length_ab <= 0.0 ? a : c) +
+                        "' start at the same point, so the length between them is not known",
+                    "give the liaison a 'length_m'");
+    return false;
+  }
+  assembly.scene.network.bends.push_back(bend);
+  return true;
+}
+
+}  // namespace
+
+void read_bends(Assembly& assembly, LinkEntry& entry) {
+  config::MappingReader& reader = entry.reader;
+  for (const char* other : {"within", "between_sets"}) {
+    if (reader.optional_value(other).exists()) {
+      reader.error_at(other, "a bending liaison acts between three MATs, not in sets",
+                      "write along: matter, or between: [a, b, c]");
+      return;
+    }
+  }
+  if (entry.has_name)
+    reader.error_at("name",
+                    "a bending liaison takes no 'name', for it has no signals and commands");
+  const bool is_along = reader.has("along");
+  const char* key = is_along ? "along" : "between";
+  if (is_along && reader.has("between"))
+    reader.error_at("along", "either 'along' or 'between' can be given in link");
+  if (is_along) reader.optional_value("between");
+  const std::vector<Triple> triples =
+      is_along ? triples_along(assembly, reader) : triples_between(assembly, reader);
+  if (assembly.problems.error_count() != entry.errors_before) return;
+  const auto first = static_cast<std::uint32_t>(assembly.scene.network.bends.size());
+  if (sum(assembly.link_counts()) + first + triples.size() > kMaxLinks) {
+    assembly.refuse_more(reader.place_of(key),
+                         "the scene has more than " + std::to_string(kMaxLinks) + " links");
+    return;
+  }
+  for (const Triple& triple : triples) {
+    if (!add_bend(assembly, *entry.law->bend, triple, reader, key)) return;
+  }
+  assembly.scene.bends.push_back({assembly.names.full(entry.name), first,
+                                  static_cast<std::uint32_t>(triples.size()), reader.place()});
+}
+
+}  // namespace cordis::scene

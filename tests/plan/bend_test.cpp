@@ -1,0 +1,136 @@
+// tests/plan/bend_test.cpp -- certified and diverging steps where matter resists bending.
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/reference/reference_integrator.h"
+#include "sim_node/plan/settle.h"
+#include "sim_node/plan/stability/start_tangent.h"
+#include "sim_node/plan/stability/step_bound.h"
+#include "tests/engine/beams.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::certified_bound;
+using plan::liaison_graph;
+
+double certified_step(const NetworkDescription& scene) {
+  return certified_bound(scene, liaison_graph(scene)).step;
+}
+
+TEST(BendBound, OfABeamIsItsLimit) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    const NetworkDescription scene = CantileverBeam(dimension).network();
+
+    const double certified = certified_step(scene);
+    const double limit = plan::StartTangent(scene).diverging_step();
+
+    EXPECT_LE(certified, limit * (1.0 + 1e-6)) << dimension;
+    EXPECT_GT(certified, 0.99 * limit) << dimension;
+  }
+}
+
+TEST(BendBound, OfThreeFreeMassesIsExact) {
+  // M^-1 K has the eigenvalue 6 B / (m h^2) alone.
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {mass(0.01, Vec3::Zero()), mass(0.01, Vec3(0.1, 0, 0)), mass(0.01, Vec3(0.2, 0, 0))};
+  scene.bends = {{0, 1, 2, 0.03, 0.0, 0.0, 0.1, 0.1}};
+  const double exact = 2.0 / std::sqrt(6.0 * 0.03 / (0.01 * 0.01));
+
+  EXPECT_NEAR(certified_step(scene), exact, 1e-6 * exact);
+  EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), exact, 1e-6 * exact);
+}
+
+/// Masses anywhere, with bends of unequal sides and some springs, at rest.
+NetworkDescription random_bends(unsigned seed, int dimension) {
+  std::mt19937 random(seed);
+  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  const auto decades = [&](double low, double high) {
+    return low * std::pow(high / low, uniform());
+  };
+  NetworkDescription scene;
+  scene.dimension = dimension;
+  scene.step = 1e-3;
+  const auto count = static_cast<std::uint32_t>(3 + random() % 8);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Vec3 place = Vec3::Zero();
+    for (int axis = 0; axis < dimension; ++axis) place[axis] = 0.3 * uniform();
+    scene.mats.push_back(i == 0 ? fixed(place) : mass(decades(0.003, 0.1), place));
+  }
+  for (std::uint32_t i = 2; i < count; ++i) {
+    const double rest = dimension < 3 ? 2.0 * uniform() - 1.0 : 0.0;
+    const double stiffness = decades(0.01, 3.0);
+    const double viscosity = uniform() < 0.5 ? 0.0 : decades(1e-5, 1e-2);
+    const double first = decades(0.03, 0.3);
+    scene.bends.push_back({i - 2, i - 1, i, stiffness, viscosity, rest, first, decades(0.03, 0.3)});
+    if (uniform() < 0.5) scene.links.push_back({i - 1, i, decades(1.0, 1000.0), 0.0, 0.05});
+  }
+  return scene;
+}
+
+TEST(BendBound, HoldsFromBothSidesForRandomNetworks) {
+  double worst = 1.0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    NetworkDescription scene = random_bends(seed, 1 + static_cast<int>(seed % 3));
+    const double certified = certified_step(scene);
+    const double limit = plan::StartTangent(scene).diverging_step();
+    EXPECT_LE(certified, limit * (1.0 + 1e-6)) << seed;
+    worst = std::min(worst, certified / limit);
+
+    scene.step = 0.98 * certified;
+    EXPECT_LT(largest_excursion(scene, 20'000), 30.0) << seed;
+  }
+  RecordProperty("worst share", std::to_string(worst));
+}
+
+TEST(BendBound, DivergesBeyondItsLimit) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    NetworkDescription scene = random_bends(seed, 1);  // linear: from any start
+    scene.step = 1.02 * plan::StartTangent(scene).diverging_step();
+    EXPECT_GT(largest_excursion(scene, 20'000), 1e6) << seed;
+  }
+}
+
+TEST(BendReference, IsWhatTheSchemeConvergesTo) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    NetworkDescription scene = random_bends(7, dimension);
+    for (engine::Bend& bend : scene.bends) bend.viscosity = 1e-4;
+    plan::ReferenceIntegrator exact(scene);
+    exact.advance_to(0.1);
+    double errors[2] = {};
+    for (const int part : {1, 2}) {
+      scene.step = 1e-5 / part;
+      World world = make_world(scene);
+      run(world, part * 10'000);
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+        errors[part - 1] += (world.position(i) - exact.position(i)).norm();
+      }
+    }
+    EXPECT_LT(errors[0], 1e-3) << dimension;
+    EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.2) << dimension;
+  }
+}
+
+TEST(BendPlan, SettlesABeamToItsSag) {
+  const CantileverBeam beam(2);
+  NetworkDescription scene = beam.network();
+  scene.gravity = Vec3(0, -0.05, 0);
+
+  const plan::Settled rest = plan::settle(scene, 1e-9, 2'000'000);
+
+  const double length = beam.length();
+  const double x = length - 0.005;  // of the last MAT
+  const double load = 0.1 * 0.05;   // [N/m]
+  const double exact =
+      load * x * x * (x * x - 4.0 * length * x + 6.0 * length * length) / (24.0 * 0.002);
+  EXPECT_NEAR(-rest.position.back().y() / exact, 1.0, 0.01);
+}
+
+}  // namespace
+}  // namespace cordis::test

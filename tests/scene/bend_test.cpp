@@ -1,0 +1,212 @@
+// tests/scene/bend_test.cpp -- how a scene says that matter resists bending.
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/scene/bad_scene.h"
+
+namespace cordis::scene {
+namespace {
+
+using Triples = std::vector<std::array<std::uint32_t, 3>>;
+
+constexpr const char* kScene = R"(liaisons:
+  steel: {kind: bending, stiffness_n_m_per_rad: 0.02, viscosity_n_m_s_per_rad: 1.0e-4}
+  bent: {like: steel, rest_rad: 0.5, length_m: 0.3}
+matter:
+  clamp: {kind: fixed, at_m: [-0.1, 0]}
+  rod: {kind: string, count: 5, mass_kg: 0.01, from_m: [0, 0], to_m: [0.4, 0], stiffness_n_per_m: 100}
+  net: {kind: grid, rows: 3, columns: 4, mass_kg: 0.01, corner_m: [0, 1], spacing_m: [0.1, 0.2], stiffness_n_per_m: 100}
+  loop: {kind: ring, count: 5, mass_kg: 0.01, center_m: [0, 3], radius_m: 0.1, stiffness_n_per_m: 100}
+links:
+)";
+
+std::vector<engine::Bend> bends_of(const std::string& link) {
+  return sound_scene(2, kScene + ("  - " + link) + "\n").network.bends;
+}
+
+Triples triples_of(const std::string& link) {
+  Triples triples;
+  for (const engine::Bend& bend : bends_of(link))
+    triples.push_back({bend.mat_a, bend.mat_b, bend.mat_c});
+  return triples;
+}
+
+TEST(Bends, GoAlongAString) {
+  const std::vector<engine::Bend> bends = bends_of("{liaison: steel, along: rod}");
+
+  EXPECT_EQ(triples_of("{liaison: steel, along: rod}"), (Triples{{1, 2, 3}, {2, 3, 4}, {3, 4, 5}}));
+  EXPECT_EQ(bends[0].stiffness, 0.02);
+  EXPECT_EQ(bends[0].viscosity, 1e-4);
+  EXPECT_EQ(bends[0].rest_angle, 0.0);
+  EXPECT_NEAR(bends[0].length_ab, 0.1, 1e-15);
+}
+
+TEST(Bends, GoAlongAPartOfIt) {
+  EXPECT_EQ(triples_of("{liaison: steel, along: \"rod[1..3]\"}"), (Triples{{2, 3, 4}}));
+}
+
+TEST(Bends, GoAlongTheRowsAndColumnsOfAGrid) {
+  const Triples triples = triples_of("{liaison: steel, along: net}");
+
+  ASSERT_EQ(triples.size(), 3u * 2u + 4u * 1u);
+  EXPECT_EQ(triples[0], (std::array<std::uint32_t, 3>{6, 7, 8}));
+  EXPECT_EQ(triples[6], (std::array<std::uint32_t, 3>{6, 10, 14}));
+  const std::vector<engine::Bend> bends = bends_of("{liaison: steel, along: net}");
+  EXPECT_NEAR(bends[0].length_ab, 0.1, 1e-15);
+  EXPECT_NEAR(bends[6].length_bc, 0.2, 1e-15);
+}
+
+TEST(Bends, GoAroundARing) {
+  EXPECT_EQ(triples_of("{liaison: steel, along: loop}"),
+            (Triples{{18, 19, 20}, {19, 20, 21}, {20, 21, 22}, {21, 22, 18}, {22, 18, 19}}));
+}
+
+TEST(Bends, AreBetweenThreeEnds) {
+  const std::vector<engine::Bend> bends = bends_of(
+      "{liaison: bent, between: [clamp, \"rod[0]\", \"rod[1]\"], stiffness_n_m_per_rad: 2}");
+
+  ASSERT_EQ(bends.size(), 1u);
+  EXPECT_EQ(bends[0].mat_a, 0u);
+  EXPECT_EQ(bends[0].mat_b, 1u);
+  EXPECT_EQ(bends[0].mat_c, 2u);
+  EXPECT_EQ(bends[0].stiffness, 2.0);
+  EXPECT_EQ(bends[0].rest_angle, 0.5);
+  EXPECT_EQ(bends[0].length_ab, 0.3);
+  EXPECT_EQ(triples_of("{liaison: steel, between: [\"rod[0..1]\", \"rod[2..3]\", clamp]}"),
+            (Triples{{1, 3, 0}, {2, 4, 0}}));
+}
+
+TEST(Bends, CountTheirMatsInEachCopyOfAPart) {
+  const Scene scene = sound_scene(1, R"(parts:
+  reed:
+    matter: {tongue: {kind: string, count: 3, mass_kg: 0.01, stiffness_n_per_m: 0}}
+    links: [{liaison: steel, along: tongue}]
+liaisons:
+  steel: {kind: bending, stiffness_n_m_per_rad: b_n_m, length_m: 0.01, parameters: {b_n_m: 0.5}}
+matter:
+  reeds: {part: reed, repeat: {count: 2, translate_m: 0}}
+)");
+
+  ASSERT_EQ(scene.network.bends.size(), 2u);
+  EXPECT_EQ(scene.network.bends[1].mat_a, 3u);
+  EXPECT_EQ(scene.network.bends[1].length_bc, 0.01);
+  EXPECT_EQ(scene.network.bends[1].stiffness, 0.5);
+  EXPECT_EQ(scene.bends[1].name, "reeds[1].steel");
+}
+
+TEST(Bends, OfARingWithTheAngleOfItsCornersAreAtRest) {
+  const double corner = 2.0 * std::numbers::pi / 8.0;
+  const Scene scene = sound_scene(
+      2, "liaisons: {hoop: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: " +
+             config::number_text(corner) +
+             "}}\nmatter: {loop: {kind: ring, count: 8, mass_kg: 1, center_m: [0, 0], "
+             "radius_m: 1, stiffness_n_per_m: 1}}\nlinks: [{liaison: hoop, along: loop}]\n");
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  world.step();
+  for (std::uint32_t i = 0; i < 8; ++i) EXPECT_LT(world.link_force(i).norm(), 1e-12);
+}
+
+class BadBends : public BadScenes {};
+
+TEST_P(BadBends, HaveOneProblemAtItsPlace) {
+  expect_only_problem(GetParam());
+}
+
+constexpr const char* kSteel =
+    "liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1}, s: {kind: spring, "
+    "stiffness_n_per_m: 1}}\n"
+    "matter: {a: {kind: points, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0], [2, 0]]}, one: {kind: "
+    "mass, mass_kg: 1, "
+    "at_m: [5, 5]}, floor: {kind: plane, at_m: [0, -9], normal: y}}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Bends, BadBends,
+    testing::Values(
+        BadScene{kHead2,
+                 "liaisons: {b: ^{kind: bending}}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: [0, "
+                 "0]}}\n",
+                 "missing key 'stiffness_n_m_per_rad' in liaison 'b'", ""},
+        BadScene{kHead2,
+                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, states: ^{}}}\nmatter: "
+                 "{a: {kind: mass, "
+                 "mass_kg: 1, at_m: [0, 0]}}\n",
+                 "a bending liaison has no states: its law is linear", ""},
+        BadScene{kHead3,
+                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: ^1}}\nmatter: "
+                 "{a: {kind: "
+                 "mass, mass_kg: 1, at_m: [0, 0, 0]}}\n",
+                 "in 3 dimensions a bend has no sign, so the rest of liaison 'b' is straight",
+                 "a spring between the two ends holds an angle"},
+        BadScene{kHead1,
+                 "liaisons: {b: {kind: ^bending, stiffness_n_m_per_rad: 1}}\nmatter: {a: {kind: "
+                 "mass, mass_kg: 1, "
+                 "at_m: 0}}\n",
+                 "in 1 dimension liaison 'b' needs a 'length_m'",
+                 "MATs move across the line on which they stand, so its length is not known"},
+        BadScene{kHead2,
+                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}, p: {parallel: "
+                 "[^b]}}\nmatter: {a: {kind: "
+                 "mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "a bending liaison joins three MATs, so it stands in no 'parallel'",
+                 "write a link of its own with it"},
+        BadScene{kHead2,
+                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}}\nmatter: {a: {kind: "
+                 "string, count: 3, mass_kg: "
+                 "1, from_m: [0, 0], to_m: [1, 0], liaison: ^b}}\n",
+                 "a bending liaison joins three MATs, not two neighbours",
+                 "write a link with it: along: matter"}));
+
+TEST(Bends, SayWhatIsWrongWithALink) {
+  struct Bad {
+    const char* link;
+    const char* message;
+  };
+  for (const Bad& bad : {
+           Bad{"{liaison: steel, along: one}", "no three neighbours of a line are picked"},
+           Bad{"{liaison: s, along: a}", "only a bending liaison acts along lines"},
+           Bad{"{liaison: steel, along: a}",
+               "'a[2]' and 'a[3]' start at the same point, so the length between them is not "
+               "known"},
+           Bad{"{liaison: steel, along: \"a[0..2]\", rest_m: 1}", "a bending has no 'rest_m'"},
+           Bad{"{liaison: steel, along: \"a[0..2]\", name: x}",
+               "a bending liaison takes no 'name', for it has no signals and commands"},
+           Bad{"{liaison: steel, along: \"a[0..2]\", between: [one, \"a[0]\", \"a[1]\"]}",
+               "either 'along' or 'between' can be given in link"},
+           Bad{"{liaison: steel, between: [\"a[0]\", \"a[1]\"]}",
+               "a bending liaison is between 3 ends, the middle one second, got 2"},
+           Bad{"{liaison: steel, between: [\"a[0]\", one, \"a[0]\"]}",
+               "the ends of a bending liaison must differ, got 'a[0]' twice"},
+           Bad{"{liaison: steel, between: [\"a[0..1]\", one, \"a[0..2]\"]}",
+               "the 3 ends must be equally many MATs, or one"},
+           Bad{"{liaison: steel, between: [one, \"a[0]\", floor]}", "a surface does not bend"},
+           Bad{"{liaison: steel, within: a}",
+               "a bending liaison acts between three MATs, not in sets"},
+           Bad{"{liaison: steel, along: \"a[0..2]\", stiffness_n_m_per_rad: -1}",
+               "'stiffness_n_m_per_rad' in link must be >= 0, got -1"},
+       }) {
+    config::Problems problems;
+    load_scene_text(scene_head(2) + kSteel + "links:\n  - " + bad.link + "\n", "t", problems);
+    ASSERT_FALSE(problems.all().empty()) << bad.link;
+    EXPECT_EQ(problems.in_order()[0].message, bad.message) << bad.link;
+    EXPECT_EQ(problems.in_order()[0].place.line, 7) << bad.link;
+  }
+}
+
+TEST(Bends, NameThemselvesInARefusal) {
+  config::Problems problems;
+  load_scene_text(
+      "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\n"
+      "liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1, length_m: 1}}\n"
+      "matter: {rod: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1}}\n"
+      "links: [{liaison: steel, along: rod}]\n",
+      "t", problems);
+  ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+  EXPECT_EQ(problems.all()[0].message,
+            "the integrator modal does not take stiffness against bending, which steel has");
+}
+
+}  // namespace
+}  // namespace cordis::scene
