@@ -53,6 +53,25 @@ std::optional<std::uint32_t> friction_beside_dampers(const engine::NetworkDescri
   return static_cast<std::uint32_t>(solved - steps.begin());
 }
 
+/// The first bend whose viscosity `leapfrog` would solve in a link, beside implicit dampers: it
+/// extrapolates the speed instead, which knows how the forces change.
+std::optional<std::uint32_t> bend_beside_dampers(const engine::NetworkDescription& network,
+                                                 const LiaisonGraph& graph) {
+  if (network.bends.empty() || !engine::damps_implicitly(network)) return {};
+  std::vector<double> share(network.mats.size(), 0.0);  // Z' at a MAT, of all bends
+  for (const Edge& edge : graph.edges) {
+    if (edge.liaison.kind != LiaisonKind::kBend) continue;
+    for (const std::uint32_t mat : {edge.mat_a, edge.mat_b})
+      share[mat] += network.step * edge.viscosity * graph.inverse_mass[mat];
+  }
+  for (const Edge& edge : graph.edges) {
+    const bool damps = edge.liaison.kind == LiaisonKind::kBend && edge.viscosity > 0.0;
+    const double both = share[edge.mat_a] + share[edge.mat_b];
+    if (damps && both > engine::kMaxExtrapolatedViscosity) return edge.liaison.index;
+  }
+  return {};
+}
+
 /// Step beyond which the tangent at the start, or one contact, diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   const auto limit_at = [&graph](const engine::NetworkDescription& varied) {
@@ -178,6 +197,11 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
     return Uncertainty{
         LiaisonId{LiaisonKind::kStateLink, *solved},
         "its friction is solved beside implicit dampers, for which no limit is known"};
+  }
+  if (const auto damped = bend_beside_dampers(network, graph)) {
+    return Uncertainty{
+        LiaisonId{LiaisonKind::kBend, *damped},
+        "its viscosity has Z' above 0.3 beside implicit dampers, for which no limit is known"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
   const double touch = contact ? contact->stiffness : 0.0;
