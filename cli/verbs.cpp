@@ -1,6 +1,7 @@
 // cli/verbs.cpp
 #include "cli/verbs.h"
 
+#include "cli/bench/bench_verb.h"
 #include "cli/check/check_verb.h"
 #include "cli/chronogram/chronogram_verb.h"
 #include "cli/ctl/ctl_verb.h"
@@ -51,6 +52,7 @@ void add_verbs(CommandLine& line) {
   add_merge_verb(line);
   add_recover_verb(line);
   add_doctor_verb(line);
+  add_bench_verb(line);
   add_lab_verb(line);
   add_test_verb(line);
   line.examples(

@@ -81,6 +81,8 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"cli/table/", {"cli/table/", "cli/command_line.h"}},
     {"record_node/idl/", {"record_node/idl/"}},
     {"record_node/", {"record_node/", "node/", "idl/"}},
+    {"cli/bench/",  // measures the engine
+     {"cli/", "node/", "idl/", "sim_node/scene/", "sim_node/engine/"}},
     {"cli/lab/",  // plays a session in one process
      {"cli/", "node/", "idl/", "sim_node/", "device_node/"}},
     {"cli/resim/",  // computes a session again
@@ -158,7 +160,7 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
      {"cli/ctl/", "cli/export/", "cli/offline/", "cli/run/"},
      {"cli/scene_source/", "cli/check/", "cli/cut/", "cli/doctor/", "cli/echo/", "cli/get/",
       "cli/hz/", "cli/info/", "cli/lab/", "cli/list/", "cli/merge/", "cli/play/", "cli/record/",
-      "cli/recover/", "cli/resim/", "cli/simulate/", "cli/test/"},
+      "cli/recover/", "cli/resim/", "cli/simulate/", "cli/test/", "cli/bench/"},
      {"cli/chronogram/", "cli/film/", "cli/plot/"},
      {"cli/verbs.", "cli/main."}},
 };

@@ -3,27 +3,20 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "cli/run/child.h"
+#include "cli/processor_name.h"
+#include "cli/run/gnuplot.h"
+#include "cli/text_file.h"
 #include "sim_node/engine/core/vector_width.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::cli {
 namespace {
-
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-}
 
 std::string number_or_nothing(double value) {
   return value > 0.0 ? fmt::format("{:.6g}", value) : std::string();
@@ -158,23 +151,6 @@ std::string panel(const LabReport& report, const std::string& cost, const std::s
   return text + "\n";
 }
 
-std::string processor_name() {
-  std::ifstream file("/proc/cpuinfo");
-  std::string line;
-  while (std::getline(file, line)) {
-    const std::size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
-  }
-  return "unknown processor";
-}
-
-/// Text for gnuplot as it stands: between single quotes nothing but these means anything.
-std::string quoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
-  return quoted + "'";
-}
-
 /// What a reader of the chart needs: the scene, and the machine.
 std::string captions(const LabReport& report) {
   const scene::Scene& scene = report.lab.scene;
@@ -182,10 +158,11 @@ std::string captions(const LabReport& report) {
       "{} ({}), {:.4g} s; rms amplitude {:.3g} m; {}", scene.name, scene::size_text(scene),
       report.reference.sampling.duration(), report.reference.amplitude, report.reference.made_by);
   const std::string where =
-      fmt::format("{}, {}, Cordis {}", processor_name(),
+      fmt::format("{}, {}, Cordis {}", processor_name(machine::SystemFiles()),
                   engine::to_string(engine::best_vector_width()), CORDIS_VERSION);
   constexpr const char* kLabel = "set label {} {} at screen 0.5, {} center noenhanced\n";
-  return fmt::format(kLabel, 1, quoted(what), 0.065) + fmt::format(kLabel, 2, quoted(where), 0.03);
+  return fmt::format(kLabel, 1, gnuplot_quoted(what), 0.065) +
+         fmt::format(kLabel, 2, gnuplot_quoted(where), 0.03);
 }
 
 std::string script_of(const LabReport& report) {
@@ -213,22 +190,12 @@ std::string script_of(const LabReport& report) {
          "unset multiplot\n";
 }
 
-/// @return whether gnuplot is there and is content
-bool run_gnuplot(const std::filesystem::path& folder) {
-  const std::string command = "cd \"$1\" && gnuplot chart.gp";
-  Child child({"/bin/sh", "-c", command, "sh", folder.string()});
-  constexpr std::chrono::milliseconds kPatience{20};
-  std::optional<Ending> ending;
-  while (!(ending = child.ending())) std::this_thread::sleep_for(kPatience);
-  return ending->exit_code() == 0;
-}
-
 }  // namespace
 
 std::string draw_chart(const LabReport& report, const std::filesystem::path& folder) {
-  write(folder / "lab.csv", csv_of(report));
-  write(folder / "chart.gp", script_of(report));
-  if (run_gnuplot(folder)) {
+  write_text_file(folder / "lab.csv", csv_of(report));
+  write_text_file(folder / "chart.gp", script_of(report));
+  if (run_gnuplot(folder / "chart.gp")) {
     return "lab.csv, chart.gp and chart.svg are in " + folder.string();
   }
   return "lab.csv and chart.gp are in " + folder.string() +

@@ -4,12 +4,12 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cli/bench/plain_loop.h"
 #include "sim_node/engine/world.h"
-#include "tests/bench/plain_loop.h"
 
 namespace {
 
-using cordis::bench::PlainLoop;
+using cordis::cli::PlainLoop;
 using cordis::engine::Mat;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;

@@ -1,11 +1,11 @@
-// tests/bench/plain_loop.cpp
-#include "tests/bench/plain_loop.h"
+// cli/bench/plain_loop.cpp
+#include "cli/bench/plain_loop.h"
 
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-namespace cordis::bench {
+namespace cordis::cli {
 namespace {
 
 template <int kAxes>
@@ -25,7 +25,8 @@ struct PlainLink {
 };
 
 template <int kAxes>
-void add_force(const PlainLink& link, PlainMass<kAxes>* masses) noexcept {
+[[gnu::always_inline]] inline void add_force(const PlainLink& link,
+                                             PlainMass<kAxes>* masses) noexcept {
   PlainMass<kAxes>& a = masses[link.a];
   PlainMass<kAxes>& b = masses[link.b];
   double along[kAxes];
@@ -49,7 +50,8 @@ void add_force(const PlainLink& link, PlainMass<kAxes>* masses) noexcept {
 }
 
 template <int kAxes>
-void step_all(const std::vector<PlainLink>& links, std::vector<PlainMass<kAxes>>& masses) noexcept {
+[[gnu::always_inline]] inline void step_all(const std::vector<PlainLink>& links,
+                                            std::vector<PlainMass<kAxes>>& masses) noexcept {
   for (const PlainLink& link : links) add_force(link, masses.data());
   for (PlainMass<kAxes>& mass : masses) {
     for (int axis = 0; axis < kAxes; ++axis) {
@@ -84,8 +86,22 @@ struct PlainLoop::State {
   std::vector<PlainMass<3>> masses_3d;
 };
 
+namespace {
+
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__SANITIZE_ADDRESS__)
+[[gnu::target_clones("default", "avx2", "avx512f")]]
+#endif
+void step_on_any(PlainLoop::State& state) noexcept {
+  if (state.dimension == 1) step_all(state.links, state.masses_1d);
+  if (state.dimension == 2) step_all(state.links, state.masses_2d);
+  if (state.dimension == 3) step_all(state.links, state.masses_3d);
+}
+
+}  // namespace
+
 PlainLoop::PlainLoop(const engine::NetworkDescription& network)
-    : state_(new State{network.dimension, {}, {}, {}, {}}) {
+    : state_(std::make_unique<State>(State{network.dimension, {}, {}, {}, {}})) {
   for (const engine::Link& link : network.links) {
     state_->links.push_back(
         {link.mat_a, link.mat_b, link.stiffness, link.viscosity / network.step, link.rest_length});
@@ -95,14 +111,10 @@ PlainLoop::PlainLoop(const engine::NetworkDescription& network)
   if (network.dimension == 3) add_masses(network, state_->masses_3d);
 }
 
-PlainLoop::~PlainLoop() {
-  delete state_;
-}
+PlainLoop::~PlainLoop() = default;
 
 void PlainLoop::step() noexcept {
-  if (state_->dimension == 1) step_all(state_->links, state_->masses_1d);
-  if (state_->dimension == 2) step_all(state_->links, state_->masses_2d);
-  if (state_->dimension == 3) step_all(state_->links, state_->masses_3d);
+  step_on_any(*state_);
 }
 
 double PlainLoop::position(std::size_t mass, int axis) const noexcept {
@@ -111,4 +123,4 @@ double PlainLoop::position(std::size_t mass, int axis) const noexcept {
   return state_->masses_3d[mass].position[axis];
 }
 
-}  // namespace cordis::bench
+}  // namespace cordis::cli

@@ -1,0 +1,28 @@
+// cli/run/gnuplot.cpp
+#include "cli/run/gnuplot.h"
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include "cli/run/child.h"
+
+namespace cordis::cli {
+
+std::string gnuplot_quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "''" : c == '\n' ? " " : std::string(1, c);
+  return quoted + "'";
+}
+
+bool run_gnuplot(const std::filesystem::path& script) {
+  const std::string command = "cd \"$1\" && gnuplot \"$2\"";
+  const std::filesystem::path folder = script.has_parent_path() ? script.parent_path() : ".";
+  Child child({"/bin/sh", "-c", command, "sh", folder.string(), script.filename().string()});
+  constexpr std::chrono::milliseconds kPatience{20};
+  std::optional<Ending> ending;
+  while (!(ending = child.ending())) std::this_thread::sleep_for(kPatience);
+  return ending->exit_code() == 0;
+}
+
+}  // namespace cordis::cli

@@ -1,0 +1,15 @@
+// cli/run/gnuplot.h -- draws with gnuplot.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace cordis::cli {
+
+/// Text for gnuplot as it stands: between single quotes nothing but these means anything.
+std::string gnuplot_quoted(const std::string& text);
+
+/// Runs a script in its folder. @return whether gnuplot is there and is content
+bool run_gnuplot(const std::filesystem::path& script);
+
+}  // namespace cordis::cli
