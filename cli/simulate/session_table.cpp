@@ -2,7 +2,7 @@
 #include "cli/simulate/session_table.h"
 
 #include "cli/mat_words.h"
-#include "sim_node/devices/port_body.h"
+#include "sim_node/checks/port_body.h"
 
 namespace cordis::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "node/config/mapping_reader.h"
-#include "sim_node/devices/port_body.h"
+#include "sim_node/checks/port_body.h"
 
 namespace cordis::sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim_node/devices/port_body.h"
+#include "sim_node/checks/port_body.h"
 
 namespace cordis::sim {
 namespace {

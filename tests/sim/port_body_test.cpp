@@ -1,5 +1,5 @@
 // tests/sim/port_body_test.cpp -- a device that moves a whole body.
-#include "sim_node/devices/port_body.h"
+#include "sim_node/checks/port_body.h"
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-// sim_node/devices/port_body.h -- what a device moves at a port: one MAT, or the masses of a body.
+// sim_node/checks/port_body.h -- what a device moves at a port: one MAT, or the masses of a body.
 #pragma once
 
 #include "sim_node/engine/world.h"

@@ -1,5 +1,5 @@
-// sim_node/devices/port_body.cpp
-#include "sim_node/devices/port_body.h"
+// sim_node/checks/port_body.cpp
+#include "sim_node/checks/port_body.h"
 
 #include <algorithm>
 #include <vector>
