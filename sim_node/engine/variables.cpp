@@ -53,13 +53,7 @@ double value_of_maxwell_link(const Variable& variable, const World& world) noexc
   return variable.quantity == VariableKind::kDistance ? stretch.distance : stretch.elongation_rate;
 }
 
-/// Mass, centre of mass and momentum of the masses of a group.
-struct BodyMotion {
-  double mass = 0.0;
-  Vec3 center = Vec3::Zero();
-  Vec3 momentum = Vec3::Zero();
-};
-
+/// Calls (mass, MAT) for each mass of a group.
 template <class Visit>
 void visit_masses(const VariableGroup& group, const World& world, Visit visit) noexcept {
   const std::vector<Mat>& mats = world.network().description().mats;
@@ -68,15 +62,28 @@ void visit_masses(const VariableGroup& group, const World& world, Visit visit) n
   }
 }
 
-BodyMotion motion_of(const VariableGroup& group, const World& world) noexcept {
-  BodyMotion body;
+/// The masses of a group times a vector of each, and without it.
+struct MassSum {
+  double mass = 0.0;  // [kg]
+  Vec3 sum = Vec3::Zero();
+};
+
+template <class VectorOf>
+MassSum sum_over(const VariableGroup& group, const World& world, VectorOf vector_of) noexcept {
+  MassSum sums;
   visit_masses(group, world, [&](double mass, std::uint32_t mat) {
-    body.mass += mass;
-    body.center += mass * world.position(mat);
-    body.momentum += mass * world.velocity(mat);
+    sums.mass += mass;
+    sums.sum += mass * vector_of(mat);
   });
-  body.center /= body.mass;
-  return body;
+  return sums;
+}
+
+MassSum sum_of_positions(const VariableGroup& group, const World& world) noexcept {
+  return sum_over(group, world, [&](std::uint32_t mat) { return world.position(mat); });
+}
+
+MassSum momentum_of(const VariableGroup& group, const World& world) noexcept {
+  return sum_over(group, world, [&](std::uint32_t mat) { return world.velocity(mat); });
 }
 
 /// Sum of m (x - p) x (v - V), with V the velocity of the centre of mass where it is p, else 0.
@@ -85,9 +92,9 @@ Vec3 angular_momentum_of(const Variable& variable, const World& world) noexcept 
   Vec3 point = variable.point;
   Vec3 velocity = Vec3::Zero();
   if (!variable.is_about_point) {
-    const BodyMotion body = motion_of(group, world);
-    point = body.center;
-    velocity = body.momentum / body.mass;
+    const MassSum positions = sum_of_positions(group, world);
+    point = positions.sum / positions.mass;
+    velocity = momentum_of(group, world).sum / positions.mass;
   }
   Vec3 sum = Vec3::Zero();
   visit_masses(group, world, [&](double mass, std::uint32_t mat) {
@@ -102,10 +109,11 @@ double value_of_body(const Variable& variable, const World& world) noexcept {
     return variable.direction.dot(angular_momentum_of(variable, world));
   }
   const VariableGroup& group = world.network().description().groups[variable.index];
-  const BodyMotion body = motion_of(group, world);
-  return variable.quantity == VariableKind::kMomentum
-             ? variable.direction.dot(body.momentum)
-             : variable.direction.dot(body.center) - variable.offset;
+  if (variable.quantity == VariableKind::kMomentum) {
+    return variable.direction.dot(momentum_of(group, world).sum);
+  }
+  const MassSum positions = sum_of_positions(group, world);
+  return variable.direction.dot(positions.sum / positions.mass) - variable.offset;
 }
 
 /// Takes the values of the members of a group together.

@@ -45,7 +45,10 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ +
-           "signals:\n  lively: {quantity: kinetic_energy}\n";
+           "signals:\n  lively: {quantity: kinetic_energy}\n"
+           "  middle: {of: p, quantity: center_of_mass, axis: x}\n"
+           "  fastest: {of: p, quantity: speed, take: largest}\n"
+           "  thrust: {of: p, quantity: force, axis: x, take: sum}\n";
   }
 
  private:
@@ -401,7 +404,14 @@ class SceneWriter {
       case 6:
         return fmt::format("{}.force_x_n {} {:.4g}", mat, more, 10.0 * length);
       default:
-        return fmt::format("lively {} {:.4g}", more, 1e-3 * speed);
+        switch (random_of_media_() % 3) {  // a signal: of the scene, of a body, of many values
+          case 0:
+            return fmt::format("lively {} {:.4g}", more, 1e-3 * speed);
+          case 1:
+            return fmt::format("middle {} {:.4g}", more, length);
+          default:
+            return fmt::format("fastest {} {:.4g}", more, speed);
+        }
     }
   }
 
