@@ -30,9 +30,15 @@ static_assert(static_cast<int>(engine::Quantity::kAge) == msg::QUANTITY_AGE);
 static_assert(static_cast<int>(engine::Quantity::kRestLength) == msg::QUANTITY_REST_LENGTH);
 static_assert(static_cast<int>(engine::Quantity::kMassA) == msg::QUANTITY_MASS_A);
 static_assert(static_cast<int>(engine::Quantity::kMassB) == msg::QUANTITY_MASS_B);
-static_assert(static_cast<int>(engine::Quantity::kNone) == msg::QUANTITY_NONE);
 static_assert(engine::kNoLink == msg::NO_INDEX);
 static_assert(kLinkIsIdle == msg::LINK_IS_IDLE);
+
+/// The contract adds quantities at its end, after QUANTITY_NONE.
+msg::EventQuantity message_of(engine::Quantity quantity) noexcept {
+  if (quantity == engine::Quantity::kSlid) return msg::QUANTITY_SLID;
+  if (quantity == engine::Quantity::kNone) return msg::QUANTITY_NONE;
+  return static_cast<msg::EventQuantity>(quantity);
+}
 
 }  // namespace
 
@@ -177,7 +183,7 @@ void FramePublisher::publish_events(const FrameShape& shape, const EventRoom& ro
     message[i].state_machine(event.state_machine);
     message[i].from_state(event.from);
     message[i].to_state(event.to);
-    message[i].quantity(static_cast<msg::EventQuantity>(event.quantity));
+    message[i].quantity(message_of(event.quantity));
     message[i].value(event.value);
     message[i].energy_j(event.energy);
   }

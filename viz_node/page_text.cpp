@@ -189,6 +189,8 @@ QuantityWords words_of(msg::EventQuantity quantity) noexcept {
       return {"mass a", "kg"};
     case msg::QUANTITY_MASS_B:
       return {"mass b", "kg"};
+    case msg::QUANTITY_SLID:
+      return {"slip", "m"};
     case msg::QUANTITY_NONE:
       break;
   }

@@ -24,6 +24,13 @@ std::string mat_name(const msg::SceneDescription& scene, std::uint32_t mat) {
   return name_in(scene.matter(), mat, "MAT " + std::to_string(mat));
 }
 
+/// The contract has its quantities in the order of the engine, but for the last.
+engine::Quantity quantity_of(msg::EventQuantity quantity) {
+  if (quantity == msg::QUANTITY_SLID) return engine::Quantity::kSlid;
+  if (quantity == msg::QUANTITY_NONE) return engine::Quantity::kNone;
+  return static_cast<engine::Quantity>(quantity);
+}
+
 EventRow row_of(const msg::LinkEvent& event, const msg::SceneDescription& scene) {
   EventRow row;
   row.time_s = static_cast<double>(event.step()) / scene.step_rate_hz();
@@ -31,7 +38,7 @@ EventRow row_of(const msg::LinkEvent& event, const msg::SceneDescription& scene)
   if (event.link() != msg::NO_INDEX) row.link = name_in(scene.links(), event.link(), "");
   row.mat_a = mat_name(scene, event.mat_a());
   row.mat_b = mat_name(scene, event.mat_b());
-  row.quantity = quantity_word(static_cast<engine::Quantity>(event.quantity()));
+  row.quantity = quantity_word(quantity_of(event.quantity()));
   row.value = event.value();
   row.energy_j = event.energy_j();
   if (event.state_machine() >= scene.state_machines().size()) return row;

@@ -49,6 +49,7 @@ NetworkDescription undamped(NetworkDescription network) {
     state_machine = start_state_alone(state_machine);
     state_machine.friction = {};
     for (engine::LinkState& state : state_machine.states) {
+      state.friction.reset();
       state.viscosity = 0.0;
       state.dissipation = engine::NoLaw{};
     }

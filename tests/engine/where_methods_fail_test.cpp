@@ -2,11 +2,14 @@
 // wrong while another does not. m = 1 and dt = 1: then K is K' and Z is Z'.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
+#include "tests/engine/surfaces.h"
 
 namespace cordis::test {
 namespace {
@@ -122,6 +125,76 @@ TEST(WhereMethodsFail, ModalNearItsNyquistFrequencyUnderALoadThatCordisBears) {
 
   scene.links[0].stiffness = 3.9;
   EXPECT_LT(excursion_by(IntegratorKind::kCordis, scene, 20000), 20.0);
+}
+
+/// A block of 1 kg on a floor that presses with 10 N and rubs with 0.5, pushed along by 4 N: it stays.
+constexpr double kLoad = 10.0;
+constexpr double kMu = 0.5;
+constexpr double kPush = 4.0;
+constexpr int kStandstill = 1'000'000;  // steps of 0.1 ms
+
+struct Standstill {
+  double creep = 0.0;    // way of the second half [m]
+  double chatter = 0.0;  // fastest in the last thousand steps [m/s]
+};
+
+Standstill standstill_of(NetworkDescription scene, std::uint32_t block, double load) {
+  scene.step = 1e-4;
+  World world = make_world(std::move(scene));
+  Standstill still;
+  const auto step = [&](double push) {
+    world.set_external_force(block, Vec3(push, -load, 0.0));
+    world.step();
+  };
+  for (int n = 0; n < kStandstill / 2; ++n) step(kPush * std::min(1.0, n / 20000.0));
+  const double half = world.position(block).x();
+  for (int n = kStandstill / 2; n < kStandstill; ++n) {
+    step(kPush);
+    if (n >= kStandstill - 1000)
+      still.chatter = std::max(still.chatter, std::abs(world.velocity(block).x()));
+  }
+  still.creep = world.position(block).x() - half;
+  return still;
+}
+
+/// Friction as a law of the speed, which grows to its limit up to a speed.
+Standstill standstill_by_law(IntegratorKind integrator, double full_at) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.integrator = integrator;
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3::Zero())};
+  LinkState rubbing;
+  rubbing.dissipation = engine::Table({-full_at, full_at}, {-kMu * kLoad, kMu * kLoad});
+  scene.state_machines.push_back(Behaving().state(rubbing).state_machine);
+  scene.state_links = {{0, 1, 0, 0.0}};
+  return standstill_of(scene, 1, 0.0);
+}
+
+TEST(WhereMethodsFail, LawsOfTheSpeedCreepOrChatterWhereFrictionSticks) {
+  // Stable with `cordis` where Z' = 5 N / full_at * dt / m < 2.
+  const Standstill gentle = standstill_by_law(IntegratorKind::kCordis, 1e-3);
+  EXPECT_NEAR(gentle.creep, 0.8e-3 * 50.0, 1e-6);
+  EXPECT_LT(gentle.chatter, 0.81e-3);
+  const Standstill steep = standstill_by_law(IntegratorKind::kCordis, 1e-5);
+  EXPECT_GT(steep.chatter, 10.0 * 1e-5);
+  const Standstill solved = standstill_by_law(IntegratorKind::kLeapfrog, 1e-5);
+  EXPECT_NEAR(solved.creep, 0.8e-5 * 50.0, 1e-8);
+  EXPECT_LT(solved.chatter, 0.81e-5);
+
+  for (const double kinetic : {0.5, 0.3}) {
+    constexpr double kFloorStiffness = 1e5;
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.mats = {mass(1.0, Vec3(0.0, 0.05 - kLoad / kFloorStiffness, 0.0))};
+    scene.radius = {0.05};
+    StateMachine touching = of_one_state(contact(kFloorStiffness, 100.0));
+    touching.friction = {kMu, kinetic, kFloorStiffness, 300.0};
+    const std::uint32_t floor = add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero());
+    touch(scene, 1, touching, 0.05, -1.0, {floor});
+    const Standstill sticks = standstill_of(scene, 0, kLoad);
+    EXPECT_LT(std::abs(sticks.creep), 1e-12) << kinetic;
+    EXPECT_LT(sticks.chatter, 1e-12) << kinetic;
+  }
 }
 
 }  // namespace

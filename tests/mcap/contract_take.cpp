@@ -130,7 +130,7 @@ Sample any_events() {
     msg::LinkEvent event;
     event.step(any_u64());
     event.link(any_u32());
-    event.quantity(static_cast<msg::EventQuantity>(any_u32() % 14));
+    event.quantity(static_cast<msg::EventQuantity>(any_u32() % (msg::QUANTITY_SLID + 1)));
     event.value(any_double());
     events.push_back({{"step", exact(event.step())},
                       {"link", event.link()},

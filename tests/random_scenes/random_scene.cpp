@@ -512,11 +512,40 @@ class SceneWriter {
     const double kinetic = chosen(0.3, 1.0) * most;
     const double k = chosen(0.1, 3000.0);
     const double z = friction_random_() % 3 == 0 ? 0.0 : chosen(1e-3, 1.0);
-    return law.substr(0, law.size() - 1) +
-           fmt::format(
-               ", friction: {{static: {:.4g}, kinetic: {:.3g}, stiffness_n_per_m: {:.4g}, "
-               "viscosity_n_s_per_m: {:.4g}}}}}",
-               most, 0.99 * kinetic, k, z);
+    std::string text = with_friction_of_states(law, k);
+    text.pop_back();
+    return text + fmt::format(
+                      ", friction: {{static: {:.4g}, kinetic: {:.3g}, stiffness_n_per_m: {:.4g}, "
+                      "viscosity_n_s_per_m: {:.4g}}}}}",
+                      most, 0.99 * kinetic, k, z);
+  }
+
+  /// Gives some states another friction, or none, and some exits a condition that asks for it.
+  std::string with_friction_of_states(std::string law, double stiffness) {
+    const std::string opening = "exits: [";
+    for (std::size_t exits = law.find(opening); exits != std::string::npos;) {
+      const double size = static_cast<double>(friction_random_() % 1000 + 1) / 1000.0;
+      std::string own;
+      if (friction_random_() % 3 == 0) {
+        own =
+            friction_random_() % 3 == 0
+                ? "friction: none, "
+                : fmt::format(
+                      "friction: {{static: {:.4g}, kinetic: {:.3g}, stiffness_n_per_m: {:.4g}}}, ",
+                      size, 0.5 * size, (0.2 + 3.0 * size) * stiffness);
+      }
+      std::string more;
+      if (friction_random_() % 3 == 0) {
+        const std::size_t target = law.find("to: ", exits);
+        more = fmt::format(
+            "{{{}, when: {} > {:.4g}}}, ", law.substr(target, law.find(',', target) - target),
+            friction_random_() % 2 == 0 ? "slip_m" : "0.001 * normal_force_n", 0.01 * size * size);
+      }
+      law.insert(exits + opening.size(), more);
+      law.insert(exits, own);
+      exits = law.find(opening, exits + own.size() + opening.size());
+    }
+    return law;
   }
 
   void add_set() {

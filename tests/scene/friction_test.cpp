@@ -45,6 +45,35 @@ links:
   EXPECT_EQ(friction.viscosity, 0.0);
 }
 
+TEST(FrictionOfALiaison, IsAnotherOneInAStateThatHasItsOwn) {
+  const Scene scene = sound_scene(2, std::string(kMatter) + R"(liaisons:
+  grip:
+    friction: {static: 0.5, stiffness_n_per_m: 300, viscosity_n_s_per_m: 2}
+    states:
+      holds: {stiffness_n_per_m: 600, pulls: false, exits: [{to: slides, when: slip_m > 0.001}]}
+      slides:
+        stiffness_n_per_m: 600
+        pulls: false
+        friction: {static: 0.3, kinetic: 0.2, viscosity_n_s_per_m: 1}
+        exits: [{to: free, when: normal_force_n > 3}]
+      free: {stiffness_n_per_m: 600, pulls: false, friction: none, exits: [{to: holds, when: age_s > 1}]}
+links:
+  - {liaison: grip, between_sets: [balls, floor], rest: radii, range_m: 0.11}
+)");
+
+  const engine::StateMachine& grip = scene.network.state_machines[0];
+  EXPECT_FALSE(grip.states[0].friction);
+  EXPECT_EQ(*grip.states[1].friction, (engine::Friction{0.3, 0.2, 300.0, 1.0}));
+  EXPECT_FALSE(grip.states[2].friction->acts());
+  EXPECT_EQ(grip.exits[0].triggered, engine::Quantity::kSlid);
+  EXPECT_EQ(grip.exits[1].triggered, engine::Quantity::kForce);
+  engine::LinkQuantities link{};
+  link[static_cast<std::size_t>(engine::Quantity::kForce)] = -3.5;
+  EXPECT_EQ(engine::value_of(grip.exits[1].when, link), 1.0);
+  link[static_cast<std::size_t>(engine::Quantity::kForce)] = 3.5;
+  EXPECT_EQ(engine::value_of(grip.exits[1].when, link), 0.0);
+}
+
 class BadFriction : public testing::TestWithParam<BadScene> {};
 
 TEST_P(BadFriction, IsAProblemOfItsPlace) {
@@ -89,6 +118,17 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "liaison: ^r}\n",
                  "friction acts in liaisons of sets, not between neighbours", ""},
+        BadScene{
+            kHead2,
+            "liaisons:\n  a: {states: {x: {pulls: false, exits: [{to: x, when: ^slip_m > 1}]}}}\n"
+            "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+            "a condition of liaison 'a' asks for 'slip_m', which has no friction",
+            "give it 'friction', or ask for slip_m_per_s"},
+        BadScene{kHead2,
+                 "liaisons:\n  a: {states: {x: {pulls: false, friction: ^some}}}\n"
+                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 "'friction' in state 'x' of liaison 'a' must be a mapping of keys, got 'some'",
+                 ""},
         BadScene{kHead1,
                  "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 1]}\n"

@@ -103,6 +103,11 @@ liaisons:
   attracting: {elasticity: {kind: lennard_jones, depth_j: 1.0e-5, diameter_m: 0.01, cut_m: 0.02}}
   rings: {elasticity: {kind: rings, rings: [{stiffness_n_per_m: 1, radius_m: 0.1}]}}
   rubbing: {kind: state_machine, stiffness_n_per_m: 1, force_limit_n: 2, pulls: false, pushes: true, friction: {static: 0.5, kinetic: 0.4, stiffness_n_per_m: 100, viscosity_n_s_per_m: 1}}
+  gripping:
+    friction: {static: 0.5, stiffness_n_per_m: 100}
+    states:
+      holds: {friction: {static: 0.9, kinetic: 0.8, stiffness_n_per_m: 90, viscosity_n_s_per_m: 2}, pulls: false, exits: [{to: slides, when: slip_m > 0.1}]}
+      slides: {friction: none, pulls: false, exits: [{to: holds, when: normal_force_n < 1}]}
 links:
   - {liaison: soft, between: [one, wall], name: held, rest_m: 0.2}
   - {liaison: rings, within: some, range_m: 0.01}

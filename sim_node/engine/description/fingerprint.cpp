@@ -64,6 +64,13 @@ class Fingerprint {
     add(state.force_limit);
     add(state.first_exit);
     add(state.last_exit);
+    if (state.friction) add(*state.friction);
+  }
+  void add(const Friction& friction) {
+    for (const double value : {friction.static_coefficient, friction.kinetic_coefficient,
+                               friction.stiffness, friction.viscosity}) {
+      add(value);
+    }
   }
   void add(const Transition& exit) {
     add_all(exit.when.code);
@@ -75,12 +82,7 @@ class Fingerprint {
     add_all(state_machine.states);
     add_all(state_machine.exits);
     add(state_machine.start);
-    const Friction& friction = state_machine.friction;
-    if (!friction.acts()) return;
-    for (const double value : {friction.static_coefficient, friction.kinetic_coefficient,
-                               friction.stiffness, friction.viscosity}) {
-      add(value);
-    }
+    if (state_machine.friction.acts()) add(state_machine.friction);
   }
   void add(const StateLink& link) {
     add(link.mat_a);

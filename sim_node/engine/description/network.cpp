@@ -72,6 +72,8 @@ void check_states(const NetworkDescription& description, std::uint32_t state_mac
   for (const LinkState& state : description.state_machines[state_machine].states) {
     require(std::isfinite(state.viscosity / description.step), name + ": viscosity",
             "small enough for the step");
+    require(!state.friction || std::isfinite(state.friction->viscosity / description.step),
+            name + ": viscosity of friction", "small enough for the step");
   }
   const Friction& friction = description.state_machines[state_machine].friction;
   require(std::isfinite(friction.viscosity / description.step), name + ": viscosity of friction",
@@ -83,7 +85,7 @@ void check_state_link(const NetworkDescription& description, const StateLink& li
   check_ends(description, link, name);
   check_states(description, link.state_machine, name);
   require(std::isfinite(link.rest_length), name + ": rest length", "finite");
-  require(!description.state_machines[link.state_machine].friction.acts(), name + ": friction",
+  require(!rubs(description.state_machines[link.state_machine]), name + ": friction",
           "left out: it acts in liaisons of sets");
 }
 
@@ -165,9 +167,8 @@ void check_surfaces_of(const NetworkDescription& description, const SetLiaison& 
 void check_set(const NetworkDescription& description, const SetLiaison& set,
                const std::string& name) {
   check_states(description, set.state_machine, name);
-  require(
-      description.dimension > 1 || !description.state_machines[set.state_machine].friction.acts(),
-      name + ": friction", "left out in 1 dimension, which has no direction to slide in");
+  require(description.dimension > 1 || !rubs(description.state_machines[set.state_machine]),
+          name + ": friction", "left out in 1 dimension, which has no direction to slide in");
   require(!set.set_p.empty(), name + ": set P", "one of at least 1 MAT");
   require(std::isfinite(set.range) && set.range > 0.0, name + ": range", "finite and > 0");
   require(std::isfinite(set.rest_length), name + ": rest length", "finite");

@@ -13,8 +13,7 @@ PartnerShare partner_share(const NetworkDescription& network, const SetLiaison& 
   const LinkState& state = state_machine.states.front();
   const auto* rings = std::get_if<Rings>(&state.elasticity);
   const bool is_plain = state_machine.is_stateless() && is_none(state.dissipation) &&
-                        !state_machine.friction.acts() &&
-                        network.integrator == IntegratorKind::kCordis;
+                        !rubs(state_machine) && network.integrator == IntegratorKind::kCordis;
   if (rings == nullptr || !is_plain) return {};
   const bool turns = network.dimension > 1;
   const double core = rings->slope_beyond(0.0, turns);

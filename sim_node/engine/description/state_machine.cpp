@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/require.h"
 
 namespace cordis::engine {
@@ -42,6 +44,16 @@ void check_exit(const StateMachine& state_machine, const Transition& exit, const
   }
 }
 
+void check_friction(const Friction& friction, const std::string& name) {
+  require(is_finite_and_at_least_zero(friction.stiffness), name + ": stiffness", "finite and > 0");
+  require(is_finite_and_at_least_zero(friction.viscosity), name + ": viscosity", "finite and >= 0");
+  require(is_finite_and_at_least_zero(friction.kinetic_coefficient), name + ": kinetic coefficient",
+          "finite and >= 0");
+  require(std::isfinite(friction.static_coefficient) &&
+              friction.static_coefficient >= friction.kinetic_coefficient,
+          name + ": static coefficient", "finite and not below the kinetic one");
+}
+
 void check_state(const StateMachine& state_machine, const LinkState& state,
                  const std::string& name) {
   require(is_finite_and_at_least_zero(state.stiffness), name + ": stiffness", "finite and >= 0");
@@ -49,6 +61,7 @@ void check_state(const StateMachine& state_machine, const LinkState& state,
   require(state.force_limit > 0.0, name + ": force limit", "> 0");
   check_elasticity(state.elasticity, name + ": elasticity");
   check_dissipation(state.dissipation, name + ": dissipation");
+  if (state.friction) check_friction(*state.friction, name + ": friction");
   require(state.first_exit <= state.last_exit && state.last_exit <= state_machine.exits.size(),
           name + ": exits", "a range of the exits of the state machine");
   std::vector<bool> used(kMaxSlots, false);
@@ -61,17 +74,19 @@ void check_state(const StateMachine& state_machine, const LinkState& state,
   }
 }
 
-void check_friction(const Friction& friction, const std::string& name) {
-  require(is_finite_and_at_least_zero(friction.stiffness), name + ": stiffness", "finite and > 0");
-  require(is_finite_and_at_least_zero(friction.viscosity), name + ": viscosity", "finite and >= 0");
-  require(is_finite_and_at_least_zero(friction.kinetic_coefficient), name + ": kinetic coefficient",
-          "finite and >= 0");
-  require(std::isfinite(friction.static_coefficient) &&
-              friction.static_coefficient >= friction.kinetic_coefficient,
-          name + ": static coefficient", "finite and not below the kinetic one");
+}  // namespace
+
+const Friction& friction_in(const StateMachine& state_machine, std::size_t state) noexcept {
+  CORDIS_ASSERT(state < state_machine.states.size());
+  const std::optional<Friction>& own = state_machine.states[state].friction;
+  return own ? *own : state_machine.friction;
 }
 
-}  // namespace
+bool rubs(const StateMachine& state_machine) noexcept {
+  return std::ranges::any_of(state_machine.states, [&](const LinkState& state) {
+    return state.friction ? state.friction->acts() : state_machine.friction.acts();
+  });
+}
 
 bool asks_for_variable(const StateMachine& state_machine) noexcept {
   return std::ranges::any_of(state_machine.exits,

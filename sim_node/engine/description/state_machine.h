@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,26 @@
 #include "sim_node/engine/laws/law.h"
 
 namespace cordis::engine {
+
+/// Coulomb friction across the line of centres of the contacts of a set: a spring with memory and a
+/// damper, up to a share of the force with which the liaison pushes.
+///
+///     force = K s + Z w,  |force| <= static * push while it sticks, kinetic * push once it slides
+///
+/// with s what the contact has slid since it began, as far as the spring has followed, and w the sliding
+/// velocity. A contact that slides sticks again when it turns back and the force is within that of one that sticks.
+/// A contact that does not push has no friction, and its spring starts again at 0. Nor has one in a state without
+/// friction. Where the new state has another friction, the spring keeps its force, or its stretch where that is
+/// less energy. [Cundall and Strack 1979]
+struct Friction {
+  double static_coefficient = 0.0;   ///< >= kinetic_coefficient
+  double kinetic_coefficient = 0.0;  ///< >= 0
+  double stiffness = 0.0;            ///< K [N/m], > 0; 0: no friction
+  double viscosity = 0.0;            ///< Z [N s/m], >= 0
+
+  bool acts() const noexcept { return stiffness > 0.0; }
+  friend bool operator==(const Friction&, const Friction&) = default;
+};
 
 /// A state describer: the parameters of the liaison while it is in this state.
 ///
@@ -28,25 +49,9 @@ struct LinkState {
   bool pulls = true;       ///< false: clamped, no pulling at the release of a contact
   bool pushes = true;      ///< false: a thread
   double force_limit = std::numeric_limits<double>::infinity();  ///< [N], > 0
+  std::optional<Friction> friction{};  ///< its own; without one that of the state machine
   std::uint32_t first_exit = 0;  ///< its exits are State machine::exits[first_exit, last_exit)
   std::uint32_t last_exit = 0;
-};
-
-/// Coulomb friction across the line of centres of the contacts of a set: a spring with memory and a
-/// damper, up to a share of the force with which the liaison pushes.
-///
-///     force = K s + Z w,  |force| <= static * push while it sticks, kinetic * push once it slides
-///
-/// with s what the contact has slid since it began, as far as the spring has followed, and w the sliding
-/// velocity. A contact that slides sticks again when it turns back and the force is within that of one that sticks.
-/// A contact that does not push has no friction, and its spring starts again at 0. [Cundall and Strack 1979]
-struct Friction {
-  double static_coefficient = 0.0;   ///< >= kinetic_coefficient
-  double kinetic_coefficient = 0.0;  ///< >= 0
-  double stiffness = 0.0;            ///< K [N/m], > 0; 0: no friction
-  double viscosity = 0.0;            ///< Z [N s/m], >= 0
-
-  bool acts() const noexcept { return stiffness > 0.0; }
 };
 
 /// What a change of state does with the rest length.
@@ -76,10 +81,16 @@ struct StateMachine {
   std::vector<LinkState> states;
   std::vector<Transition> exits;
   std::uint32_t start = 0;  ///< state at step 0
-  Friction friction{};      ///< in every state; of sets in 2 or 3 dimensions alone
+  Friction friction{};  ///< in states without one of their own; of sets in 2 or 3 dimensions alone
 
   bool is_stateless() const noexcept { return states.size() == 1 && exits.empty(); }
 };
+
+/// The friction in a state. Precondition: the state exists.
+const Friction& friction_in(const StateMachine& state_machine, std::size_t state) noexcept;
+
+/// True if there is friction in any of its states.
+bool rubs(const StateMachine& state_machine) noexcept;
 
 /// The distance below which a pair of a set counts as partners [m]: infinite, for every pair that
 /// exerts a force, except for Lennard-Jones alone. That law is stiff below its inflection,

@@ -26,9 +26,12 @@ enum class Quantity : std::uint8_t {
   kRestLength = 10,  ///< present rest length [m]
   kMassA = 11,       ///< of end a [kg]; 0 for a fixed point or a port mass
   kMassB = 12,
-  kNone = 13  ///< not a quantity: of a change of state that was forced from outside
+  kSlid =
+      13,     ///< stretch of the spring of its friction as the last step ended [m], >= 0; 0 without
+              ///< friction
+  kNone = 14  ///< not a quantity: of a change of state that was forced from outside
 };
-inline constexpr std::size_t kQuantityCount = 13;
+inline constexpr std::size_t kQuantityCount = 14;
 static_assert(static_cast<std::size_t>(Quantity::kNone) == kQuantityCount);
 
 /// What one instruction does with the values on top of the stack. Truth is 1 or 0; any value that

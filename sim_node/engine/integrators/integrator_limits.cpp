@@ -97,7 +97,7 @@ std::optional<IntegratorRefusal> refusal_of_friction(const NetworkDescription& n
       network.integrator == IntegratorKind::kCordis && !(network.freeze_tolerance > 0.0);
   if (remembers) return std::nullopt;
   for (std::size_t s = 0; s < network.sets.size(); ++s) {
-    if (!network.state_machines[network.sets[s].state_machine].friction.acts()) continue;
+    if (!rubs(network.state_machines[network.sets[s].state_machine])) continue;
     const bool freezes = network.integrator == IntegratorKind::kCordis;
     return IntegratorRefusal{freezes ? "freezing together with friction" : "friction",
                              LiaisonId{LiaisonKind::kSet, static_cast<std::uint32_t>(s)}};

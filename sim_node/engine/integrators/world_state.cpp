@@ -48,8 +48,7 @@ const std::vector<StateMachine>& state_machines_of(const Snapshot& snapshot,
   const std::vector<StateMachine>& saved = snapshot.state_machines;
   if (saved.empty()) return own;
   const auto fit = [](const StateMachine& first, const StateMachine& second) {
-    return first.states.size() == second.states.size() &&
-           first.friction.acts() == second.friction.acts();
+    return first.states.size() == second.states.size() && rubs(first) == rubs(second);
   };
   if (!std::equal(own.begin(), own.end(), saved.begin(), saved.end(), fit)) {
     throw std::invalid_argument("the snapshot has other state machines than the network");
@@ -224,14 +223,14 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   if (state_machine.states.size() != table.state_machines()[index].states.size()) {
     throw std::invalid_argument("a state machine is replaced by one of as many states");
   }
-  for (const LinkState& state : state_machine.states) {
-    if (!std::isfinite(state.viscosity / network->step())) {
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    if (!std::isfinite(state_machine.states[s].viscosity / network->step()) ||
+        !std::isfinite(friction_in(state_machine, s).viscosity / network->step())) {
       throw std::invalid_argument("a viscosity is too large for the step");
     }
   }
-  if (state_machine.friction.acts() != table.state_machines()[index].friction.acts() ||
-      !std::isfinite(state_machine.friction.viscosity / network->step())) {
-    throw std::invalid_argument("friction neither comes nor goes, and its viscosity fits the step");
+  if (rubs(state_machine) != rubs(table.state_machines()[index])) {
+    throw std::invalid_argument("friction neither comes nor goes");
   }
   const double before = stored_energy();
   table.replace(index, state_machine);

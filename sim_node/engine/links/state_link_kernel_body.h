@@ -157,6 +157,7 @@ class StateLinkLoop {
     set(Quantity::kSpeedY, motion_.velocity[1]);
     set(Quantity::kSpeedZ, motion_.velocity[2]);
     set(Quantity::kSlip, motion_.slip);
+    set(Quantity::kSlid, not_slid_);
     set(Quantity::kAge, age_);
     rows_.elongation_increment = motion_.elongation_increment;
     rows_.dt = links_.dt;
@@ -226,6 +227,7 @@ class StateLinkLoop {
   LinkMotion motion_;
   alignas(64) double elongation_[kStateBatch];
   alignas(64) double age_[kStateBatch];
+  alignas(64) double not_slid_[kStateBatch] = {};
   alignas(64) double elastic_[kStateBatch];
   alignas(64) double elastic_before_[kStateBatch];
   Row elastic_work_[kParts];

@@ -42,17 +42,17 @@ void ContactStretches::make_room(std::size_t capacity) noexcept {
 }
 
 void ContactStretches::serialize(Archive& archive, std::size_t first_later,
-                                 std::size_t member_count) {
+                                 std::size_t member_count, std::size_t state_count) {
   const std::size_t count = archive.count(written_.count, written_.contacts.size());
   RestoredRows rows(read_.start, count, first_later, member_count);  // free between two steps
   archive.wholes(std::span(written_.start), [&rows](std::size_t row, std::size_t start) {
     return rows.takes_start(row, start);
   });
   const auto fits = [&](std::size_t i, const ContactStretch& contact) {
-    return rows.takes_column(i, contact.column) && contact.is_sliding <= 1;
+    return rows.takes_column(i, contact.column) && contact.mode < 2 * state_count;
   };
   archive.records(std::span(written_.contacts).first(count), fits, &ContactStretch::column,
-                  &ContactStretch::is_sliding, &ContactStretch::x, &ContactStretch::y,
+                  &ContactStretch::mode, &ContactStretch::x, &ContactStretch::y,
                   &ContactStretch::z);
   if (archive.restores()) {
     sum_of_squares_ = 0.0;
@@ -64,7 +64,7 @@ void ContactStretches::serialize(Archive& archive, std::size_t first_later,
   archive.hash_with([this](StateHash& hash) {
     for (std::size_t i = 0; i < written_.count; ++i) {
       const ContactStretch& contact = written_.contacts[i];
-      hash.add(std::uint64_t{contact.column} << 32 | contact.is_sliding);
+      hash.add(std::uint64_t{contact.column} << 32 | contact.mode);
       for (const double value : {contact.x, contact.y, contact.z}) hash.add(value);
     }
     hash.add(std::uint64_t{written_.count});

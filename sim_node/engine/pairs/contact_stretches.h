@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sim_node/engine/core/archive.h"
@@ -13,8 +14,8 @@ namespace cordis::engine {
 /// The spring of a contact, across its line of centres.
 struct ContactStretch {
   std::uint32_t column = 0;  // of the later member
-  std::uint32_t is_sliding = 0;
-  double x = 0.0;  // [m]
+  std::uint32_t mode = 0;    // twice the number of its state, and 1 more while it slides
+  double x = 0.0;            // [m]
   double y = 0.0;
   double z = 0.0;
 };
@@ -52,12 +53,18 @@ class ContactStretches {
   void make_room(std::size_t capacity) noexcept;
   /// The sum of the squares of what is written, in its order [m^2].
   double sum_of_squares() const noexcept { return sum_of_squares_; }
+  /// What is written, in its order.
+  std::span<const ContactStretch> written() const noexcept {
+    return {written_.contacts.data(), written_.count};
+  }
   /// Values that a saved contact takes.
   static constexpr std::size_t kValuesPerPair = 5;
 
   /// What was written in the last step.
   /// @param first_later  the first member that may be the later one of a pair
-  void serialize(Archive& archive, std::size_t first_later, std::size_t member_count);
+  /// @param state_count  states that a contact may be in
+  void serialize(Archive& archive, std::size_t first_later, std::size_t member_count,
+                 std::size_t state_count);
 
  private:
   struct Table {

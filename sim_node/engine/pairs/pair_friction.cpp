@@ -2,6 +2,8 @@
 #include "sim_node/engine/pairs/pair_friction.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "sim_node/engine/core/assert.h"
 
@@ -9,24 +11,41 @@ namespace cordis::engine {
 
 PairFriction::PairFriction(const NetworkDescription& description, const SetLiaison& set,
                            std::size_t capacity, std::size_t block_capacity)
-    : dt_(description.step), row_count_(set.set_p.size()), block_capacity_(block_capacity) {
-  const Friction& friction = description.state_machines[set.state_machine].friction;
-  if (!friction.acts()) return;
-  term_.unit_vectors = acts_on_surfaces(description, set);
-  term_.stiffness = friction.stiffness;
-  adopt(friction);
+    : dt_(description.step),
+      row_count_(set.set_p.size()),
+      block_capacity_(block_capacity),
+      acts_(rubs(description.state_machines[set.state_machine])),
+      unit_vectors_(acts_on_surfaces(description, set)) {
+  if (!acts()) return;
+  adopt(description.state_machines[set.state_machine], /*shows_slid=*/false);
   stretches_ = ContactStretches(row_count_, capacity);
   values_.resize(kArrayCount * block_capacity_, 0.0);
 }
 
-void PairFriction::adopt(const Friction& friction) noexcept {
-  CORDIS_ASSERT(friction.acts() == acts());
+void PairFriction::adopt(const StateMachine& state_machine, bool shows_slid) {
+  CORDIS_ASSERT(rubs(state_machine) == acts());
   if (!acts()) return;
-  term_.stiffness = friction.stiffness;
-  term_.viscosity_over_dt = friction.viscosity / dt_;
-  term_.static_coefficient = friction.static_coefficient;
-  term_.kinetic_coefficient = friction.kinetic_coefficient;
+  shows_slid_ = shows_slid;
+  terms_.clear();
+  is_one_ = true;
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const Friction& friction = friction_in(state_machine, s);
+    is_one_ = is_one_ && friction == friction_in(state_machine, 0);
+    terms_.push_back({friction.stiffness, friction.acts() ? 1.0 / friction.stiffness : 0.0,
+                      friction.viscosity / dt_, friction.static_coefficient,
+                      friction.kinetic_coefficient});
+  }
   stored_ = energy_of_springs();
+}
+
+double PairFriction::energy_of_springs() const noexcept {
+  if (is_one_) return 0.5 * terms_.front().stiffness * stretches_.sum_of_squares();
+  double sum = 0.0;
+  for (const ContactStretch& contact : stretches_.written()) {
+    const double square = contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
+    sum += terms_[contact.mode / 2].stiffness * square;
+  }
+  return 0.5 * sum;
 }
 
 void PairFriction::begin_step() noexcept {
@@ -41,19 +60,11 @@ FrictionRows PairFriction::rows() noexcept {
           {array(kForceX), array(kForceY), array(kForceZ)}};
 }
 
-FrictionRows PairFriction::step(const PairKernel& kernel, const MemberColumns& members,
-                                PairBlock& block) noexcept {
-  recall(block);
-  kernel.friction_pairs(term_, members, block.rows(), block.factor(), rows());
-  remember(block);
-  return rows();
-}
-
-/// Loads what each contact of the block remembers: 0 of a new one.
-void PairFriction::recall(PairBlock& block) noexcept {
+const double* PairFriction::recall(PairBlock& block) noexcept {
   for (const Array which : {kStretchX, kStretchY, kStretchZ, kPhase}) {
     std::fill_n(array(which), block.padded_count(), 0.0);
   }
+  if (shows_slid_) std::fill_n(array(kSlid), block.padded_count(), 0.0);
   const std::uint32_t* column = block.rows().pairs.column;
   for (std::size_t a = block.first(); a < block.last(); ++a) {
     std::size_t i = block.begin_of(a);
@@ -66,20 +77,61 @@ void PairFriction::recall(PairBlock& block) noexcept {
       array(kStretchX)[i] = old->x;
       array(kStretchY)[i] = old->y;
       array(kStretchZ)[i] = old->z;
-      array(kPhase)[i] = old->is_sliding != 0 ? kSlides : kSticks;
+      array(kPhase)[i] = old->mode % 2 != 0 ? kSlides : kSticks;
+      array(kModeBefore)[i] = old->mode;
+      if (shows_slid_)
+        array(kSlid)[i] = std::sqrt(old->x * old->x + old->y * old->y + old->z * old->z);
     }
   }
+  return shows_slid_ ? array(kSlid) : nullptr;
 }
 
-void PairFriction::remember(PairBlock& block) noexcept {
+FrictionRows PairFriction::step(const PairKernel& kernel, const MemberColumns& members,
+                                const StateIndex* states, StateIndex first_state,
+                                PairBlock& block) noexcept {
+  FrictionTerms terms;
+  terms.of_all = terms_.front();
+  terms.unit_vectors = unit_vectors_;
+  if (!is_one_) terms.of_each = take_states(states, first_state, block);
+  kernel.friction_pairs(terms, members, block.rows(), block.factor(), rows());
+  remember(states, first_state, block);
+  return rows();
+}
+
+/// Gives each pair the friction of its state. A spring that comes to a stiffer one keeps its force.
+FrictionTermRows PairFriction::take_states(const StateIndex* states, StateIndex first_state,
+                                           PairBlock& block) noexcept {
+  std::array<double*, kArrayCount - kTerms> part{};
+  for (std::size_t p = 0; p < part.size(); ++p) part[p] = array(kTerms + p);
+  for (std::size_t i = 0; i < block.padded_count(); ++i) {
+    const bool is_padding = i >= block.count();
+    const FrictionTerm term =
+        is_padding ? FrictionTerm{} : terms_[state_of(states, first_state, i)];
+    part[0][i] = term.stiffness;
+    part[1][i] = term.compliance;
+    part[2][i] = term.viscosity_over_dt;
+    part[3][i] = term.static_coefficient;
+    part[4][i] = term.kinetic_coefficient;
+    if (is_padding || array(kPhase)[i] == kNoContact) continue;
+    const double before = terms_[static_cast<std::size_t>(array(kModeBefore)[i]) / 2].stiffness;
+    if (!(before < term.stiffness)) continue;
+    for (const Array axis : {kStretchX, kStretchY, kStretchZ})
+      array(axis)[i] *= before * term.compliance;
+  }
+  return {part[0], part[1], part[2], part[3], part[4]};
+}
+
+void PairFriction::remember(const StateIndex* states, StateIndex first_state,
+                            PairBlock& block) noexcept {
   const std::uint32_t* column = block.rows().pairs.column;
   const FrictionRows found = rows();
   for (std::size_t a = block.first(); a < block.last(); ++a) {
     for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
       if (found.phase[i] == kNoContact) continue;
-      const bool kept =
-          stretches_.add({column[i], found.phase[i] == kSlides ? 1U : 0U, found.stretch[0][i],
-                          found.stretch[1][i], found.stretch[2][i]});
+      const auto state = static_cast<std::uint32_t>(state_of(states, first_state, i));
+      const std::uint32_t mode = 2 * state + (found.phase[i] == kSlides ? 1U : 0U);
+      const bool kept = stretches_.add(
+          {column[i], mode, found.stretch[0][i], found.stretch[1][i], found.stretch[2][i]});
       if (!kept) ++forgotten_;
     }
     stretches_.end_row(a);
@@ -95,7 +147,7 @@ double PairFriction::end_step() noexcept {
 
 void PairFriction::serialize(Archive& archive, std::size_t first_later, std::size_t member_count) {
   if (!acts()) return;
-  stretches_.serialize(archive, first_later, member_count);
+  stretches_.serialize(archive, first_later, member_count, terms_.size());
   if (archive.restores()) stored_ = energy_of_springs();
 }
 

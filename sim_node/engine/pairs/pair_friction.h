@@ -1,12 +1,15 @@
 // sim_node/engine/pairs/pair_friction.h -- the friction of the contacts of a set.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/pairs/contact_stretches.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
@@ -23,15 +26,22 @@ class PairFriction {
   PairFriction(const NetworkDescription& description, const SetLiaison& set, std::size_t capacity,
                std::size_t block_capacity);
 
-  /// True if there is friction.
-  bool acts() const noexcept { return term_.stiffness > 0.0; }
-  /// Takes other parameters. Precondition: acts() stays as it was.
-  void adopt(const Friction& friction) noexcept;
+  /// True if there is friction in any state.
+  bool acts() const noexcept { return acts_; }
+  /// Takes other parameters. Allocates. Precondition: acts() stays as it was.
+  /// @param shows_slid  true if conditions ask for Quantity::kSlid
+  void adopt(const StateMachine& state_machine, bool shows_slid);
 
   void begin_step() noexcept;
-  /// Finds the forces of a block whose tensions have been found. Precondition: acts().
+  /// Loads what each contact of a padded block remembers, 0 of a new one. Precondition: acts().
+  /// @return the stretch of each spring as the last step ended [m]; null unless it is asked for
+  const double* recall(PairBlock& block) noexcept;
+  /// Finds the forces of a block that was recalled, and whose tensions have been found.
+  /// Precondition: acts().
+  /// @param states  that of each pair in this step, counted from that of the machine numbered
+  ///                `first_state`; null where it has but one
   FrictionRows step(const PairKernel& kernel, const MemberColumns& members,
-                    PairBlock& block) noexcept;
+                    const StateIndex* states, StateIndex first_state, PairBlock& block) noexcept;
   /// After all blocks of a step. @return by how much the energy stored in its springs has grown [J]
   double end_step() noexcept;
 
@@ -54,21 +64,32 @@ class PairFriction {
     kForceX,
     kForceY,
     kForceZ,
-    kArrayCount
+    kSlid,
+    kModeBefore,  // of ContactStretch
+    kTerms,       // the parts of FrictionTerm, one array each
+    kArrayCount = kTerms + 5
   };
 
   double* array(std::size_t which) noexcept { return values_.data() + which * block_capacity_; }
   FrictionRows rows() noexcept;
-  void recall(PairBlock& block) noexcept;
-  void remember(PairBlock& block) noexcept;
-  double energy_of_springs() const noexcept {
-    return 0.5 * term_.stiffness * stretches_.sum_of_squares();
+  /// The number of the state of a pair.
+  std::size_t state_of(const StateIndex* states, StateIndex first_state,
+                       std::size_t pair) const noexcept {
+    return states == nullptr ? 0 : states[pair] - first_state;
   }
+  FrictionTermRows take_states(const StateIndex* states, StateIndex first_state,
+                               PairBlock& block) noexcept;
+  void remember(const StateIndex* states, StateIndex first_state, PairBlock& block) noexcept;
+  double energy_of_springs() const noexcept;
 
   double dt_;
   std::size_t row_count_;
   std::size_t block_capacity_;
-  FrictionTerm term_;
+  bool acts_;
+  bool shows_slid_ = false;
+  bool is_one_ = true;  // the same friction in all states
+  bool unit_vectors_;
+  std::vector<FrictionTerm> terms_;  // by state
   ContactStretches stretches_;
   double stored_ = 0.0;  // [J]
   std::uint32_t forgotten_ = 0;

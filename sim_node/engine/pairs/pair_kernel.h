@@ -136,10 +136,26 @@ using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::si
 /// Friction, made ready for the contacts of a set.
 struct FrictionTerm {
   double stiffness = 0.0;            // [N/m]
+  double compliance = 0.0;           // 1 / stiffness; 0 without friction [m/N]
   double viscosity_over_dt = 0.0;    // [N/m]
   double static_coefficient = 0.0;   // of the push
   double kinetic_coefficient = 0.0;  // of the push
-  bool unit_vectors = false;         // the vectors of the pairs are normals of surfaces
+};
+
+/// The parts of a FrictionTerm of each pair; arrays 64-byte aligned, padded to whole batches.
+struct FrictionTermRows {
+  const double* stiffness = nullptr;
+  const double* compliance = nullptr;
+  const double* viscosity_over_dt = nullptr;
+  const double* static_coefficient = nullptr;
+  const double* kinetic_coefficient = nullptr;
+};
+
+/// The friction of the pairs of a block.
+struct FrictionTerms {
+  FrictionTerm of_all;
+  FrictionTermRows of_each;   // null unless pairs differ in it
+  bool unit_vectors = false;  // the vectors of the pairs are normals of surfaces
 };
 
 inline constexpr double kNoContact = 0.0;
@@ -156,7 +172,7 @@ struct FrictionRows {
 /// Takes the springs from the last step to this one, and finds the forces. That of a new contact begins at 0. Where a pair does not push, all
 /// of it is 0.
 /// @param factor  tension / distance of each pair
-using FrictionPairs = void (*)(const FrictionTerm& term, const MemberColumns& members,
+using FrictionPairs = void (*)(const FrictionTerms& terms, const MemberColumns& members,
                                const PairRows& rows, const double* factor,
                                const FrictionRows& friction) noexcept;
 

@@ -372,28 +372,58 @@ void store_in(double* const* arrays, std::size_t i, typename Lanes::Mask mask,
 /// Its energy is 0: the square is too small for a number [m].
 inline constexpr double kShortestStretch = 0x1p-600;
 
+/// The friction of a batch of pairs.
+template <class Lanes>
+struct FrictionOfBatch {
+  using Row = typename Lanes::Row;
+
+  explicit FrictionOfBatch(const FrictionTerm& term) noexcept
+      : stiffness(Lanes::every(term.stiffness)),
+        compliance(Lanes::every(term.compliance)),
+        viscosity(Lanes::every(term.viscosity_over_dt)),
+        sticking(Lanes::every(term.static_coefficient)),
+        kinetic(Lanes::every(term.kinetic_coefficient)) {}
+  FrictionOfBatch(const FrictionTermRows& rows, std::size_t i) noexcept
+      : stiffness(Lanes::load(rows.stiffness + i)),
+        compliance(Lanes::load(rows.compliance + i)),
+        viscosity(Lanes::load(rows.viscosity_over_dt + i)),
+        sticking(Lanes::load(rows.static_coefficient + i)),
+        kinetic(Lanes::load(rows.kinetic_coefficient + i)) {}
+
+  Row stiffness;
+  Row compliance;
+  Row viscosity;
+  Row sticking;
+  Row kinetic;
+};
+
 /// What slides is limited, and its spring with it. Neither ever takes up more than the force takes from
 /// the motion: docs/integrators.md.
-template <class Lanes>
-void friction_pairs(const FrictionTerm& term, const MemberColumns& members, const PairRows& rows,
-                    const double* factor, const FrictionRows& friction) noexcept {
+template <class Lanes, bool kOfEach>
+void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
+                       const PairRows& rows, const double* factor,
+                       const FrictionRows& friction) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const PairRow row = rows.pairs;
-  const Row stiffness = Lanes::every(term.stiffness);
-  const Row viscosity = Lanes::every(term.viscosity_over_dt);
-  const Row sticking = Lanes::every(term.static_coefficient);
-  const Row kinetic = Lanes::every(term.kinetic_coefficient);
-  const Row shorter = Lanes::every(1.0 / term.stiffness);
+  const FrictionOfBatch<Lanes> of_all(terms.of_all);
   const Row shortest = Lanes::every(kShortestStretch);
   const Row sticks = Lanes::every(kSticks);
   const Row slides = Lanes::every(kSlides);
   const Row one = Lanes::every(1.0);
   const Row none = Lanes::zero();
   for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
-    const Row reach = term.unit_vectors ? one : Lanes::load(row.length + i);
+    const auto term = [&]() noexcept {
+      if constexpr (kOfEach) {
+        return FrictionOfBatch<Lanes>(terms.of_each, i);
+      } else {
+        return of_all;
+      }
+    }();
+    const Row reach = terms.unit_vectors ? one : Lanes::load(row.length + i);
     const Row push = none - Lanes::load(factor + i) * reach;
-    const auto touches = Lanes::less(none, push);
+    auto touches = Lanes::less(none, push);
+    if constexpr (kOfEach) touches = Lanes::both(touches, Lanes::less(none, term.stiffness));
     if (Lanes::bits(touches) == 0U) {
       store_in<Lanes>(friction.stretch, i, touches, {none, none, none});
       store_in<Lanes>(friction.force, i, touches, {none, none, none});
@@ -417,17 +447,17 @@ void friction_pairs(const FrictionTerm& term, const MemberColumns& members, cons
     stretch.x = Lanes::select(is_known, stretch.x + way.x, none);
     stretch.y = Lanes::select(is_known, stretch.y + way.y, none);
     stretch.z = Lanes::select(is_known, stretch.z + way.z, none);
-    Row3 tangential{stiffness * stretch.x + viscosity * way.x,
-                    stiffness * stretch.y + viscosity * way.y,
-                    stiffness * stretch.z + viscosity * way.z};
+    Row3 tangential{term.stiffness * stretch.x + term.viscosity * way.x,
+                    term.stiffness * stretch.y + term.viscosity * way.y,
+                    term.stiffness * stretch.z + term.viscosity * way.z};
     const Row square = dot<Lanes>(tangential, tangential);
-    const Row limit = Lanes::select(onward, kinetic, sticking) * push;
+    const Row limit = Lanes::select(onward, term.kinetic, term.sticking) * push;
     const auto beyond = Lanes::less(limit * limit, square);
     if (Lanes::bits(beyond) != 0U) {
-      const Row most = kinetic * push;
+      const Row most = term.kinetic * push;
       const Row share = most * Lanes::inverse_or_zero(square, Lanes::sqrt(square));
       tangential = scaled<Lanes>(tangential, Lanes::select(beyond, share, one));
-      const Row longest = Lanes::maximum(most * shorter, shortest);
+      const Row longest = Lanes::maximum(most * term.compliance, shortest);
       const Row stretch_square = dot<Lanes>(stretch, stretch);
       const auto longer = Lanes::both(beyond, Lanes::less(longest * longest, stretch_square));
       const Row left =
@@ -438,6 +468,16 @@ void friction_pairs(const FrictionTerm& term, const MemberColumns& members, cons
     store_in<Lanes>(friction.force, i, touches, tangential);
     const Row next = Lanes::select(Lanes::either(beyond, onward), slides, sticks);
     Lanes::store(friction.phase + i, Lanes::select(touches, next, none));
+  }
+}
+
+template <class Lanes>
+void friction_pairs(const FrictionTerms& terms, const MemberColumns& members, const PairRows& rows,
+                    const double* factor, const FrictionRows& friction) noexcept {
+  if (terms.of_each.stiffness == nullptr) {
+    friction_of_pairs<Lanes, false>(terms, members, rows, factor, friction);
+  } else {
+    friction_of_pairs<Lanes, true>(terms, members, rows, factor, friction);
   }
 }
 

@@ -86,7 +86,7 @@ bool PairStateMachines::is_bound(std::size_t a, std::uint32_t column) const noex
          states_.state(first).state != start_;
 }
 
-void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
+void PairStateMachines::step(const PairStep& step, const MemberColumns& members, const double* slid,
                              double range_square, PairBlock& block) noexcept {
   if (needs_mass_) find_masses(block.rows());
   if (stateless_) {
@@ -96,7 +96,7 @@ void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
   recall(step, block);
   if (needs_velocity_) find_velocities(members, block.rows());
   find_quantities(step, block);
-  step_batches(step, block);
+  step_batches(step, slid, block);
   if (remembers(step)) remember(range_square, block);
   find_factors(range_square, block);
 }
@@ -196,7 +196,8 @@ void PairStateMachines::find_quantities(const PairStep& step, PairBlock& block) 
   }
 }
 
-void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noexcept {
+void PairStateMachines::step_batches(const PairStep& step, const double* slid,
+                                     PairBlock& block) noexcept {
   alignas(64) double elastic_before[kStateBatch] = {};
   const PairRows pairs = block.rows();
   StateMachineRows rows{};
@@ -230,6 +231,7 @@ void PairStateMachines::step_batches(const PairStep& step, PairBlock& block) noe
     set(Quantity::kSpeedY, array(kSpeedY) + i);
     set(Quantity::kSpeedZ, array(kSpeedZ) + i);
     set(Quantity::kSlip, array(kSlip) + i);
+    set(Quantity::kSlid, (slid == nullptr ? array(kNotSlid) : slid) + i);
     set(Quantity::kForce, rows.tension);
     set(Quantity::kImpulse, rows.impulse);
     set(Quantity::kAge, array(kAge) + i);

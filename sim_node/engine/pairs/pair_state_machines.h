@@ -55,8 +55,9 @@ class PairStateMachines {
                                             const PairRow& row) noexcept;
   /// Finds the tensions of a padded block whose pairs have been measured. It holds the rest lengths
   /// that new pairs have.
-  void step(const PairStep& step, const MemberColumns& members, double range_square,
-            PairBlock& block) noexcept;
+  /// @param slid  of each pair, see Quantity::kSlid; null without friction [m]
+  void step(const PairStep& step, const MemberColumns& members, const double* slid,
+            double range_square, PairBlock& block) noexcept;
 
   /// Rows that are left out of a step remember what they did.
   void keep_rows(const PairStep& step, std::size_t first, std::size_t last) noexcept {
@@ -75,6 +76,10 @@ class PairStateMachines {
   const PairStates& states() const noexcept { return states_; }
   PairStates& states() noexcept { return states_; }
   StateIndex start_state() const noexcept { return start_; }
+  /// The states of the pairs of the block of the last step(). Null where there is but one.
+  const StateIndex* states_of_block() const noexcept {
+    return stateless_ ? nullptr : state_.data();
+  }
   /// Shows the pairs that are in another state than that of the start, with their first member.
   template <class Visit>
   void visit_bound(Visit visit) const {
@@ -103,6 +108,7 @@ class PairStateMachines {
     kSpeedY,
     kSpeedZ,
     kSlip,
+    kNotSlid,
     kAge,
     kMassA,
     kMassB,
@@ -121,7 +127,7 @@ class PairStateMachines {
   void recall(const PairStep& step, PairBlock& block) noexcept;
   void begin_pair(std::size_t pair, StateIndex state, const PairStep& step) noexcept;
   void find_quantities(const PairStep& step, PairBlock& block) noexcept;
-  void step_batches(const PairStep& step, PairBlock& block) noexcept;
+  void step_batches(const PairStep& step, const double* slid, PairBlock& block) noexcept;
   void record_changes(const PairStep& step, std::size_t i, const PairRows& pairs,
                       const StateMachineRows& rows) noexcept;
   void remember(double range_square, PairBlock& block) noexcept;

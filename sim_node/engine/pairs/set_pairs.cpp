@@ -123,7 +123,8 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 
 void SetPairs::adopt(const StateTable& table) {
   state_machines_.adopt(table);
-  friction_.adopt(table.state_machines()[state_machine_].friction);
+  friction_.adopt(table.state_machines()[state_machine_], table.needs(Quantity::kSlid));
+  first_state_ = table.first_state(state_machine_);
   const StateIndex start = table.start_state(state_machine_);
   const StateTerm& term = table.terms()[start];
   const Law& elasticity = table.state(start).elasticity;
@@ -354,14 +355,17 @@ void SetPairs::step_block(const PairStep& step) noexcept {
   } else {
     pad_at_surfaces();
   }
+  const bool rubs = friction_.acts() && !step.frozen;
+  const double* const slid = rubs ? friction_.recall(block_) : nullptr;
   if (path_ == Path::kLinear) {
     kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
                          block_.viscous_factor());
   } else {
-    state_machines_.step(step, members(), range_ * range_, block_);
+    state_machines_.step(step, members(), slid, range_ * range_, block_);
   }
-  if (friction_.acts() && !step.frozen) {
-    const FrictionRows friction = friction_.step(kernel_, members(), block_);
+  if (rubs) {
+    const FrictionRows friction =
+        friction_.step(kernel_, members(), state_machines_.states_of_block(), first_state_, block_);
     kernel_.spread_vectors(rows, block_.factor(), friction, force_.data());
     kernel_.spread_vectors(rows, block_.viscous_factor(), friction, viscous_.data());
     contacts_.add(rows, block_.factor(), &friction);

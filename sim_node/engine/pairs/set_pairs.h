@@ -182,6 +182,7 @@ class SetPairs {
 
   const PairKernel& kernel_;
   std::uint32_t state_machine_;
+  StateIndex first_state_ = 0;
   std::size_t count_p_;
   std::size_t all_pairs_;
   std::size_t pairs_of_ports_;             // of those moved from outside, at most

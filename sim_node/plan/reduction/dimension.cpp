@@ -61,8 +61,7 @@ bool asks_for_angular_momentum(const scene::Scene& scene) {
 bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   if (!network.state_links.empty()) return false;
-  const auto rubs = [](const engine::StateMachine& one) { return one.friction.acts(); };
-  if (std::ranges::any_of(network.state_machines, rubs)) return false;
+  if (std::ranges::any_of(network.state_machines, engine::rubs)) return false;
   const auto is_bent = [](const engine::Bend& bend) { return bend.rest_angle != 0.0; };
   if (std::ranges::any_of(network.bends, is_bent)) return false;
   const auto has_sign = [](const engine::Variable& variable) {

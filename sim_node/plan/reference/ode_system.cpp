@@ -40,8 +40,7 @@ OdeSystem::OdeSystem(engine::NetworkDescription network)
     throw std::invalid_argument("MATs that follow a function of time have no reference integrator");
   }
   for (const engine::StateMachine& state_machine : network_.state_machines) {
-    if (state_machine.friction.acts())
-      throw std::invalid_argument("friction has no reference integrator");
+    if (rubs(state_machine)) throw std::invalid_argument("friction has no reference integrator");
     if (asks_for_variable(state_machine))
       throw std::invalid_argument("conditions on other variables have no reference integrator");
     for (const engine::Transition& exit : state_machine.exits) {

@@ -172,7 +172,7 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const Slope slope = with_friction(
       on_surfaces ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
                   : largest_slope(state_machine, rest, network.dimension, here),
-      state_machine.friction);
+      state_machine);
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =

@@ -290,7 +290,9 @@ bool ends_by_its_own_motion(const engine::StateMachine& state_machine, std::size
   return std::any_of(first, last, [](const engine::Transition& exit) {
     return std::ranges::any_of(exit.when.code, [](const engine::Instruction& each) {
       return each.operation == engine::Operation::kQuantity &&
-             each.quantity != engine::Quantity::kAge && each.quantity != engine::Quantity::kImpulse;
+             each.quantity != engine::Quantity::kAge &&
+             each.quantity != engine::Quantity::kImpulse &&
+             each.quantity != engine::Quantity::kSlid;
     });
   });
 }
@@ -300,7 +302,8 @@ bool ends_by_its_own_motion(const engine::StateMachine& state_machine, std::size
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
   engine::StateMachine alone;
   alone.states = {state_machine.states[state_machine.start]};
-  alone.friction = state_machine.friction;
+  alone.friction = friction_in(state_machine, state_machine.start);
+  alone.states[0].friction.reset();
   alone.states[0].first_exit = alone.states[0].last_exit = 0;
   return alone;
 }
@@ -315,6 +318,8 @@ double stored_in(const engine::StateMachine& state_machine, const engine::LawPoi
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
 
+namespace {
+
 Slope with_friction(Slope slope, const engine::Friction& friction) noexcept {
   if (!friction.acts()) return slope;
   const double followed = friction.static_coefficient;
@@ -322,6 +327,19 @@ Slope with_friction(Slope slope, const engine::Friction& friction) noexcept {
   slope.stiffness = std::max(slope.stiffness, friction.stiffness) + followed * slope.stiffness;
   slope.viscosity = std::max(slope.viscosity, friction.viscosity) + followed * slope.viscosity;
   return slope;
+}
+
+}  // namespace
+
+Slope with_friction(const Slope& slope, const engine::StateMachine& state_machine) noexcept {
+  Slope largest = slope;
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const Slope one = with_friction(slope, friction_in(state_machine, s));
+    largest.variation = std::max(largest.variation, one.variation);
+    largest.stiffness = std::max(largest.stiffness, one.stiffness);
+    largest.viscosity = std::max(largest.viscosity, one.viscosity);
+  }
+  return largest;
 }
 
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,

@@ -35,8 +35,9 @@ struct Slope {
 };
 
 /// Friction gives way across the line of centres, and follows the push along it: the slope in any direction.
-/// The slip is at most `static` times the push, as steep; derived in docs/stability.md.
-Slope with_friction(Slope slope, const engine::Friction& friction) noexcept;
+/// The slip is at most `static` times the push, as steep; derived in docs/stability.md. Over all states.
+/// @param slope  of the state machine without friction
+Slope with_friction(const Slope& slope, const engine::StateMachine& state_machine) noexcept;
 
 /// Over all states of a state machine. [Luc90 III.2.3 b formalism to modify the liaison]
 /// @param rest_length  of the liaison [m]; of a set, that of its nearest pair

@@ -118,6 +118,11 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
     } else if (word.kind == ExpressionWord::Kind::kName) {
       if (const QuantityName* const known = find_quantity(word.name)) {
         code.push_back({Operation::kQuantity, known->quantity, 0.0, 0});
+        if (word.name == kNormalForceWord) {
+          code.push_back({Operation::kNegate, engine::Quantity::kDistance, 0.0, 0});
+          code.push_back({Operation::kConstant, engine::Quantity::kDistance, 0.0, 0});
+          code.push_back({Operation::kMax, engine::Quantity::kDistance, 0.0, 0});
+        }
         if (compiled.first == engine::Quantity::kNone) compiled.first = known->quantity;
         continue;
       }
@@ -125,6 +130,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       if (!value) {
         std::vector<std::string> words = parameters.names();
         for (const QuantityName& known : kQuantityNames) words.emplace_back(known.word);
+        words.emplace_back(kNormalForceWord);
         if (outside != nullptr) {
           words.insert(words.end(), outside->signals.begin(), outside->signals.end());
           words.emplace_back(kTimeWord);

@@ -15,20 +15,31 @@ struct QuantityName {
 };
 
 inline constexpr QuantityName kQuantityNames[] = {
-    {"distance_m", engine::Quantity::kDistance},    {"elongation_m", engine::Quantity::kElongation},
-    {"speed_m_per_s", engine::Quantity::kSpeed},    {"speed_x_m_per_s", engine::Quantity::kSpeedX},
-    {"speed_y_m_per_s", engine::Quantity::kSpeedY}, {"speed_z_m_per_s", engine::Quantity::kSpeedZ},
-    {"slip_m_per_s", engine::Quantity::kSlip},      {"force_n", engine::Quantity::kForce},
-    {"impulse_n_s", engine::Quantity::kImpulse},    {"age_s", engine::Quantity::kAge},
-    {"rest_m", engine::Quantity::kRestLength},      {"mass_a_kg", engine::Quantity::kMassA},
+    {"distance_m", engine::Quantity::kDistance},
+    {"elongation_m", engine::Quantity::kElongation},
+    {"speed_m_per_s", engine::Quantity::kSpeed},
+    {"speed_x_m_per_s", engine::Quantity::kSpeedX},
+    {"speed_y_m_per_s", engine::Quantity::kSpeedY},
+    {"speed_z_m_per_s", engine::Quantity::kSpeedZ},
+    {"slip_m_per_s", engine::Quantity::kSlip},
+    {"slip_m", engine::Quantity::kSlid},
+    {"force_n", engine::Quantity::kForce},
+    {"impulse_n_s", engine::Quantity::kImpulse},
+    {"age_s", engine::Quantity::kAge},
+    {"rest_m", engine::Quantity::kRestLength},
+    {"mass_a_kg", engine::Quantity::kMassA},
     {"mass_b_kg", engine::Quantity::kMassB},
 };
+
+/// How hard the link has pushed in the last step [N], >= 0: max(-force_n, 0).
+inline constexpr const char* kNormalForceWord = "normal_force_n";
 
 /// The time since the start, in conditions and in functions of time [s].
 inline constexpr const char* kTimeWord = "time_s";
 
-/// nullptr when there is none of that name.
+/// nullptr when there is none of that name. Of kNormalForceWord that it is found from.
 constexpr const QuantityName* find_quantity(std::string_view word) noexcept {
+  if (word == kNormalForceWord) word = "force_n";
   for (const QuantityName& known : kQuantityNames) {
     if (word == known.word) return &known;
   }

@@ -111,6 +111,8 @@ class Entries {
         value_in(drawn, quantity) = size() * dice_.between(-2.0, 2.0);
     }
     value_in(drawn, engine::Quantity::kSlip) = std::abs(value_in(drawn, engine::Quantity::kSlip));
+    if (engine::asks_for(when, engine::Quantity::kSlid))
+      value_in(drawn, engine::Quantity::kSlid) = size() * dice_.between(0.0, 2.0);
     double elongation = size() * dice_.between(-2.0, 2.0);
     double force = size() * dice_.between(-2.0, 2.0);
     if (is_linear(from) && !engine::asks_for(when, engine::Quantity::kForce))

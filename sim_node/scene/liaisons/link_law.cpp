@@ -151,7 +151,7 @@ std::optional<LinkLaw> law_of_liaison(const Use& use, const Value& name, const L
 }  // namespace
 
 bool rubs(const LinkLaw& law) {
-  return (law.state_machine != nullptr && law.state_machine->friction.acts()) ||
+  return (law.state_machine != nullptr && engine::rubs(*law.state_machine)) ||
          std::any_of(law.beside.begin(), law.beside.end(), rubs);
 }
 

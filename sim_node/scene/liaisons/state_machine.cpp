@@ -94,6 +94,43 @@ Transition read_exit(config::MappingReader& reader, const ExitSource& source,
   return exit;
 }
 
+/// The key `friction`. @param before  whose stiffness and viscosity count unless it gives its own
+engine::Friction read_friction(config::MappingReader& owner, const engine::Friction& before,
+                               const ParameterValues& parameters, Problems& problems) {
+  engine::Friction friction;
+  const Value value = owner.optional_mapping("friction");
+  if (!value.exists()) return friction;
+  config::MappingReader reader(value, "friction of " + owner.what(), problems);
+  const Range not_negative = Range::not_negative();
+  friction.static_coefficient =
+      required_formula(reader, "static", not_negative, parameters, problems);
+  friction.kinetic_coefficient = optional_formula(reader, "kinetic", friction.static_coefficient,
+                                                  not_negative, parameters, problems);
+  friction.stiffness =
+      before.acts()
+          ? optional_formula(reader, "stiffness_n_per_m", before.stiffness, Range::positive(),
+                             parameters, problems)
+          : required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
+  friction.viscosity = optional_formula(reader, "viscosity_n_s_per_m", before.viscosity,
+                                        Range::between(0.0, kMaxViscosity), parameters, problems);
+  if (friction.kinetic_coefficient > friction.static_coefficient) {
+    reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
+  }
+  reader.finish();
+  return friction;
+}
+
+/// The key `friction` of a state: a mapping, or `none`.
+std::optional<engine::Friction> read_own_friction(config::MappingReader& state,
+                                                  const engine::Friction& of_liaison,
+                                                  const ParameterValues& parameters,
+                                                  Problems& problems) {
+  const Value value = state.optional_value("friction");
+  if (!value.exists()) return std::nullopt;
+  if (value.text() == "none") return engine::Friction{};
+  return read_friction(state, of_liaison, parameters, problems);
+}
+
 void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
                 engine::StateMachine& state_machine, StateMachinePlaces& places) {
   const std::string what = "state '" + entry.key + "' of " + liaison;
@@ -103,6 +140,8 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   }
   LinkState state = read_physics(reader, source.parameters, source.problems);
   state.name = entry.key;
+  state.friction =
+      read_own_friction(reader, state_machine.friction, source.parameters, source.problems);
   state.first_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   std::uint32_t next_slot = 0;
   const Value exits = reader.optional_sequence("exits");
@@ -121,27 +160,16 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   state_machine.states.push_back(std::move(state));
 }
 
-/// The key `friction`.
-engine::Friction read_friction(config::MappingReader& liaison, const ParameterValues& parameters,
-                               Problems& problems) {
-  engine::Friction friction;
-  const Value value = liaison.optional_mapping("friction");
-  if (!value.exists()) return friction;
-  config::MappingReader reader(value, "friction of " + liaison.what(), problems);
-  const Range not_negative = Range::not_negative();
-  friction.static_coefficient =
-      required_formula(reader, "static", not_negative, parameters, problems);
-  friction.kinetic_coefficient = optional_formula(reader, "kinetic", friction.static_coefficient,
-                                                  not_negative, parameters, problems);
-  friction.stiffness =
-      required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
-  friction.viscosity = optional_formula(reader, "viscosity_n_s_per_m", 0.0,
-                                        Range::between(0.0, kMaxViscosity), parameters, problems);
-  if (friction.kinetic_coefficient > friction.static_coefficient) {
-    reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
+/// `slip_m` without friction is always 0.
+void check_slip(const engine::StateMachine& state_machine, const StateMachinePlaces& places,
+                const std::string& liaison, Problems& problems) {
+  if (rubs(state_machine)) return;
+  for (std::size_t e = 0; e < state_machine.exits.size(); ++e) {
+    if (!asks_for(state_machine.exits[e].when, engine::Quantity::kSlid)) continue;
+    problems.error(places.exits[e],
+                   "a condition of " + liaison + " asks for 'slip_m', which has no friction",
+                   "give it 'friction', or ask for slip_m_per_s");
   }
-  reader.finish();
-  return friction;
 }
 
 constexpr std::array<const char*, 7> kSignsOfStateMachine{
@@ -158,7 +186,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
                                         const ParameterValues& parameters, AskedOutside& outside,
                                         StateMachinePlaces& places, Problems& problems) {
   engine::StateMachine state_machine;
-  state_machine.friction = read_friction(reader, parameters, problems);
+  state_machine.friction = read_friction(reader, {}, parameters, problems);
   if (!reader.has("states")) {
     state_machine.states.push_back(read_physics(reader, parameters, problems));
     places.states.push_back({reader.place(), true});
@@ -184,6 +212,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
   const ExitSource source{parameters, names, outside, problems};
   for (const Value::Entry& entry : states.entries())
     read_state(entry, reader.what(), source, state_machine, places);
+  check_slip(state_machine, places, reader.what(), problems);
   return state_machine;
 }
 

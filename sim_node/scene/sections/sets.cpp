@@ -170,7 +170,7 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                       "take rings, a table or an expression");
       return;
     }
-    if (state_machine->friction.acts() && assembly.scene.space() == 1) {
+    if (rubs(*state_machine) && assembly.scene.space() == 1) {
       reader.error_at("liaison", "space 1 has no direction to slide in, so there is no friction",
                       "take a liaison without 'friction', or 'space: 2'");
       return;
