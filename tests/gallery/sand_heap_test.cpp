@@ -12,12 +12,12 @@ namespace {
 
 /// The highest ball of the sand within a distance from a point of the floor [m].
 double height_near(const GallerySession& session, double x, double z) {
-  constexpr double kNear = 0.012;
+  constexpr double kBeside = 0.012;
   const scene::NamedRange sand = session.mats("sand");
   double highest = 0.0;
   for (std::uint32_t i = sand.first; i < sand.first + sand.count; ++i) {
     const engine::Vec3& place = session.world().position(i);
-    if (std::hypot(place.x() - x, place.z() - z) < kNear) highest = std::max(highest, place.y());
+    if (std::hypot(place.x() - x, place.z() - z) < kBeside) highest = std::max(highest, place.y());
   }
   return highest;
 }

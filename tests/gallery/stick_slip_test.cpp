@@ -43,7 +43,7 @@ TEST(StickSlip, GoesByTheClosedFormWithTwoCoefficientsAndWithTwoStates) {
   GallerySession session("stick_slip.yaml");
   const std::array<std::string, 2> names{"first", "second"};
   std::array<Slips, 2> blocks;
-  session.play_until(6.4, [&] {
+  session.play_until(4.85, [&] {
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       blocks[i].see(session.time_s(), session.signal(names[i] + "_speed"),
                     session.signal(names[i] + "_stretch"));
@@ -51,7 +51,7 @@ TEST(StickSlip, GoesByTheClosedFormWithTwoCoefficientsAndWithTwoStates) {
   });
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Slips& block = blocks[i];
-    ASSERT_GE(block.began.size(), 6u) << names[i];
+    ASSERT_GE(block.began.size(), 5u) << names[i];
     for (std::size_t n = 2; n < block.began.size(); ++n)
       EXPECT_NEAR(block.began[n] - block.began[n - 1], period, 0.005 * period) << names[i];
     for (std::size_t n = 1; n < block.lasted.size(); ++n)
