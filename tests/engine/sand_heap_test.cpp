@@ -70,7 +70,7 @@ NetworkDescription column(const json& data, std::uint32_t seed, double mu) {
   return scene;
 }
 
-/// Of repose, of a triangle as high and as wide as the heap.
+/// The angle of repose of a triangle as high and as wide as the heap [deg].
 double angle_deg(const json& data, std::uint32_t seed, double mu) {
   const NetworkDescription scene = column(data, seed, mu);
   World world = make_world(scene);
