@@ -1,11 +1,13 @@
 // tests/scene/whole_signal_test.cpp -- signals of a whole: bodies, many values, contacts, several
 // liaisons.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <random>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/core/vector_width.h"
