@@ -24,7 +24,8 @@ class SceneWriter {
         friction_random_(~seed),
         random_of_drives_(seed ^ 0x5bd1e995U),
         random_of_variables_(seed ^ 0x2545f491U),
-        random_of_media_(seed ^ 0x1b873593U) {
+        random_of_media_(seed ^ 0x1b873593U),
+        random_of_bends_(seed ^ 0x9e3779b9U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -43,6 +44,7 @@ class SceneWriter {
     for (std::uint32_t l = 0; l < links; ++l) add_link(l);
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
+    if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ +
            "signals:\n  lively: {quantity: kinetic_energy}\n"
@@ -82,12 +84,12 @@ class SceneWriter {
       integrator =
           one_of<const char*>({"cordis", "cordis", "cordis", "leapfrog", "leapfrog", "implicit"});
     }
-    const bool freezes = integrator == "cordis" && chance(0.1);
-    may_rub_ = integrator == "cordis" && !freezes && space_ > 1;
+    freezes_ = integrator == "cordis" && chance(0.1);
+    may_rub_ = integrator == "cordis" && !freezes_ && space_ > 1;
     head_ =
         fmt::format("cordis: 1\nname: chance\nspace: {}\nstep: {{rate_hz: {}, integrator: {}{}}}\n",
                     space_, one_of({1000, 2000, 5000, 20000, 44000}), integrator,
-                    freezes ? ", freeze: {tolerance_m: 1.0e-5}" : "");
+                    freezes_ ? ", freeze: {tolerance_m: 1.0e-5}" : "");
   }
 
   std::string world() {
@@ -548,6 +550,31 @@ class SceneWriter {
     return law;
   }
 
+  double bend_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_bends_()) / 4294967296.0;
+  }
+
+  /// Between neighbours and at the wall, in four scenes of ten; its numbers have a source of their own too.
+  void add_bends() {
+    if (bend_between(0.0, 1.0) > 0.4) return;
+    const auto chosen = [this](double low, double high) {
+      return low * std::pow(high / low, bend_between(0.0, 1.0));
+    };
+    const double stiffness = chosen(1e-4, 1.0);
+    std::string law = fmt::format("{{kind: bending, stiffness_n_m_per_rad: {:.4g}", stiffness);
+    const double length = chosen(0.03, 0.3);
+    if (space_ == 1 || bend_between(0.0, 1.0) < 0.3)
+      law += fmt::format(", length_m: {:.4g}", length);
+    const double viscosity = chosen(1e-6, 1e-2);
+    if (matter_ == Matter::kAnything && bend_between(0.0, 1.0) < 0.6)
+      law += fmt::format(", viscosity_n_m_s_per_rad: {:.4g}", viscosity);
+    const double rest = bend_between(-3.0, 3.0);
+    if (space_ < 3 && bend_between(0.0, 1.0) < 0.5) law += fmt::format(", rest_rad: {:.4g}", rest);
+    liaisons_ += "  of_bends: " + law + "}\n";
+    if (count_ > 2 && bend_between(0.0, 1.0) < 0.7) links_ += "  - {liaison: of_bends, along: p}\n";
+    links_ += "  - {liaison: of_bends, between: [wall, \"p[0]\", \"p[1]\"]}\n";
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -646,6 +673,8 @@ class SceneWriter {
   std::mt19937 random_of_drives_;     // by itself: what a seed draws besides does not depend on it
   std::mt19937 random_of_variables_;  // likewise
   std::mt19937 random_of_media_;      // likewise
+  std::mt19937 random_of_bends_;      // likewise
+  bool freezes_ = false;
   bool may_rub_ = false;
   int space_ = 3;
   Matter matter_ = Matter::kAnything;
