@@ -20,6 +20,7 @@ double outer_viscosity(const plan::LiaisonGraph& graph, const scene::Port& port,
   }
   for (const plan::Edge& edge : graph.edges) {
     if (is_inside[edge.mat_a] == is_inside[edge.mat_b] || (least && !edge.bounded)) continue;
+    if (edge.liaison.kind == engine::LiaisonKind::kBend) continue;  // its edges bound it from above
     sum += edge.viscosity;
   }
   return sum;  // contacts may end
