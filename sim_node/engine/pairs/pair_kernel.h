@@ -111,6 +111,31 @@ using GatherPlane = std::size_t (*)(const MemberColumns& members, const PlaneQue
 /// without a direction.
 inline constexpr double kMinSquare = 0x1p-1022;
 
+/// What members of a set have, 4 values of each, aligned to a whole batch.
+struct MemberValues {
+  double* position = nullptr;  // x(n) [m]
+  double* moved = nullptr;     // x(n) - x(n-1) [m]
+  double* force = nullptr;     // and as fourth value the number of partners
+  double* viscous = nullptr;   // the part of the force that stores no energy; null: none
+};
+
+/// Sums of forces times displacements [J], by the number of the member modulo 4.
+struct MemberWorks {
+  double all[4] = {};
+  double viscous[4] = {};
+};
+
+/// Takes the positions of members whose MATs follow one another, and adds what their forces have done.
+/// @param position, delayed  columns of the MATs
+/// @param count              of members, whole batches; the number of the first is a multiple of 4
+using TakeMembers = void (*)(const double* position, const double* delayed, std::size_t count,
+                             const MemberValues& members, MemberWorks& works) noexcept;
+
+/// Adds the forces of such members to their MATs, and what they have done to the sums.
+/// @param force  columns of the MATs, whose fourth value stays 0
+using GiveForces = void (*)(const MemberValues& members, std::size_t count, double* force,
+                            MemberWorks& works) noexcept;
+
 /// Finds length, inverse and elongation increment of all pairs.
 using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows) noexcept;
 
@@ -199,6 +224,8 @@ struct PairKernel {
   LargestMove largest_move = nullptr;
   GatherPairs gather_pairs = nullptr;
   GatherPlane gather_plane = nullptr;
+  TakeMembers take_members = nullptr;
+  GiveForces give_forces = nullptr;
   MeasurePairs measure_pairs = nullptr;
   SpreadRows spread_rows = nullptr;
   LinearPairs linear_pairs = nullptr;

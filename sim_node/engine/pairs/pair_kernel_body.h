@@ -349,6 +349,55 @@ typename Lanes::Row3 scaled(const typename Lanes::Row3& v, typename Lanes::Row f
   return {v.x * factor, v.y * factor, v.z * factor};
 }
 
+/// Adds the works of a batch of members, each of them to the sum of its place.
+template <class Lanes>
+void add_works(const MemberValues& members, std::size_t first, MemberWorks& works) noexcept {
+  alignas(64) double work[kPairBatch];
+  const auto add = [&](const double* force, double* sums) noexcept {
+    for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
+      const std::size_t column = 4 * (first + i);
+      Lanes::store(work + i, dot<Lanes>(Lanes::neighbours(force + column),
+                                        Lanes::neighbours(members.moved + column)));
+    }
+    for (std::size_t i = 0; i < kPairBatch; ++i) sums[i % 4] += work[i];
+  };
+  add(members.force, works.all);
+  if (members.viscous != nullptr) add(members.viscous, works.viscous);
+}
+
+template <class Lanes>
+void take_members(const double* position, const double* delayed, std::size_t count,
+                  const MemberValues& members, MemberWorks& works) noexcept {
+  const MemberValues own = members;
+  MemberWorks sums = works;
+  for (std::size_t m = 0; m < count; m += kPairBatch) {
+    for (std::size_t i = 4 * m; i < 4 * (m + kPairBatch); i += 4) {
+      const auto here = Lanes::load_column(position + i);
+      Lanes::store_column(own.position + i, here);
+      Lanes::store_column(own.moved + i, here - Lanes::load_column(delayed + i));
+    }
+    add_works<Lanes>(own, m, sums);
+  }
+  works = sums;
+}
+
+template <class Lanes>
+void give_forces(const MemberValues& members, std::size_t count, double* force,
+                 MemberWorks& works) noexcept {
+  alignas(32) constexpr double kWithoutPartners[] = {1.0, 1.0, 1.0, 0.0};
+  const auto vector = Lanes::load_column(kWithoutPartners);
+  const MemberValues own = members;
+  MemberWorks sums = works;
+  for (std::size_t m = 0; m < count; m += kPairBatch) {
+    for (std::size_t i = 4 * m; i < 4 * (m + kPairBatch); i += 4) {
+      Lanes::store_column(
+          force + i, Lanes::load_column(force + i) + Lanes::load_column(own.force + i) * vector);
+    }
+    add_works<Lanes>(own, m, sums);
+  }
+  works = sums;
+}
+
 /// The displacement of b relative to a across the line of centres in the last period [m].
 template <class Lanes>
 typename Lanes::Row3 slid(const MemberColumns& members, const PairRows& rows, std::size_t i,
@@ -511,10 +560,10 @@ void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& membe
 
 template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,         largest_move<Lanes>,   gather_pairs<Lanes>,
-                    gather_plane<Lanes>,      measure_pairs<Lanes>,  spread_rows<Lanes>,
-                    linear_pairs<Lanes>,      friction_pairs<Lanes>, spread_vectors<Lanes>,
-                    lennard_jones_rows<Lanes>};
+  return PairKernel{find_near<Lanes>,      largest_move<Lanes>,   gather_pairs<Lanes>,
+                    gather_plane<Lanes>,   take_members<Lanes>,   give_forces<Lanes>,
+                    measure_pairs<Lanes>,  spread_rows<Lanes>,    linear_pairs<Lanes>,
+                    friction_pairs<Lanes>, spread_vectors<Lanes>, lennard_jones_rows<Lanes>};
 }
 
 }  // namespace cordis::engine

@@ -65,6 +65,12 @@ double dot(const double* u, const double* v) noexcept {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
+StepEnergy energy_of(const MemberWorks& works) noexcept {
+  const auto total = [](const double* sums) { return (sums[0] + sums[2]) + (sums[1] + sums[3]); };
+  const double dissipated = -0.5 * total(works.viscous);
+  return {-0.5 * total(works.all) - dissipated, dissipated, 0.0, 0.0};
+}
+
 constexpr double kNoRange = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -101,6 +107,12 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       if (!surfaces_.empty())
         own_column_.push_back(static_cast<std::uint32_t>(4 * own_column_.size()));
     }
+  }
+  for (std::size_t m = 0; m + kPairBatch <= column_.size(); m += kPairBatch) {
+    bool is_run = true;
+    for (std::size_t i = 1; i < kPairBatch; ++i)
+      is_run = is_run && column_[m + i] == column_[m] + 4 * i;
+    is_run_.push_back(is_run);
   }
   const std::size_t padded_count = padded(column_.size(), kPairBatch) + kPairBatch;
   if (!radius_.empty()) radius_.resize(padded_count, 0.0);
@@ -230,6 +242,47 @@ void SetPairs::visit_with_forces(Visit visit) const noexcept {
   }
   for (std::size_t m = 0; m < count_p_; ++m) visit(m);
   for (const std::uint32_t m : surfaces_.members()) visit(std::size_t{m});
+}
+
+/// Likewise; whole batches of balls whose MATs follow one another are visited together.
+template <class VisitOne, class VisitRun>
+void SetPairs::visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept {
+  if (surfaces_.empty() || !active_.are_all()) {
+    visit_active(visit_one);
+    return;
+  }
+  for (std::size_t m = 0; m < count_p_; ++m) visit_one(m);
+  const std::vector<std::uint32_t>& balls = surfaces_.members();
+  for (std::size_t place = 0; place < balls.size();) {
+    const std::size_t count = run_at(place);
+    if (count > 0) {
+      visit_run(std::size_t{balls[place]}, count);
+      place += count;
+    } else {
+      visit_one(std::size_t{balls[place++]});
+    }
+  }
+}
+
+/// How many of the balls from a place on are whole batches of members and of MATs.
+std::size_t SetPairs::run_at(std::size_t place) const noexcept {
+  const std::vector<std::uint32_t>& balls = surfaces_.members();
+  const std::size_t first = balls[place];
+  if (first % kPairBatch != 0) return 0;
+  std::size_t count = 0;
+  while (place + count + kPairBatch <= balls.size()) {
+    const std::size_t m = first + count;
+    const bool goes_on = balls[place + count + kPairBatch - 1] == m + kPairBatch - 1 &&
+                         is_run_[m / kPairBatch] && column_[m] == column_[first] + 4 * count;
+    if (!goes_on) break;
+    count += kPairBatch;
+  }
+  return count;
+}
+
+MemberValues SetPairs::values_from(std::size_t member) noexcept {
+  const auto from = [member](AlignedVector<double>& values) { return values.data() + 4 * member; };
+  return {from(position_), from(moved_), from(force_), has_viscous_ ? from(viscous_) : nullptr};
 }
 
 void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
@@ -377,7 +430,7 @@ void SetPairs::step_block(const PairStep& step) noexcept {
 }
 
 /// Adds the work of the force on a member to one of several sums: so none waits for the one before.
-inline void SetPairs::add_work(std::size_t member, WorkSum& sum) const noexcept {
+inline void SetPairs::add_work(std::size_t member, MemberWorks& sum) const noexcept {
   const std::size_t place = member % 4;
   const double* moved = moved_.data() + 4 * member;
   sum.all[place] += dot(force_.data() + 4 * member, moved);
@@ -394,15 +447,20 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
     });
     return work;
   }
-  WorkSum sum;
-  visit_with_forces([&](std::size_t m) {
-    take_position(m, columns);
-    add_work(m, sum);
-  });
+  MemberWorks sum;
+  visit_runs(
+      [&](std::size_t m) {
+        take_position(m, columns);
+        add_work(m, sum);
+      },
+      [&](std::size_t first, std::size_t count) {
+        kernel_.take_members(columns.position + column_[first], columns.delayed + column_[first],
+                             count, values_from(first), sum);
+      });
   measure_surfaces(columns.position, column_, /*may_leave=*/true);
   // Those that are new here have had no force.
   if (surfaces_changed_) visit_with_forces([&](std::size_t m) { take_position(m, columns); });
-  return sum.energy();
+  return energy_of(sum);
 }
 
 void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
@@ -412,14 +470,6 @@ void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcep
     position_[4 * m + axis] = position[axis];
     moved_[4 * m + axis] = position[axis] - delayed[axis];
   }
-}
-
-StepEnergy SetPairs::WorkSum::energy() const noexcept {
-  const auto total = [](const std::array<double, 4>& sums) {
-    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
-  };
-  const double dissipated = -0.5 * total(viscous);
-  return {-0.5 * total(all) - dissipated, dissipated, 0.0, 0.0};
 }
 
 /// Measures the balls that have come too far since they were measured.
@@ -447,10 +497,12 @@ void SetPairs::clear_forces() noexcept {
     if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
     return;
   }
-  visit_with_forces([&](std::size_t m) {
-    std::fill_n(force_.begin() + static_cast<std::ptrdiff_t>(4 * m), 4, 0.0);
-    if (has_viscous_) std::fill_n(viscous_.begin() + static_cast<std::ptrdiff_t>(4 * m), 4, 0.0);
-  });
+  const auto clear = [this](std::size_t first, std::size_t count) {
+    const auto begin = static_cast<std::ptrdiff_t>(4 * first);
+    std::fill_n(force_.begin() + begin, 4 * count, 0.0);
+    if (has_viscous_) std::fill_n(viscous_.begin() + begin, 4 * count, 0.0);
+  };
+  visit_runs([&](std::size_t m) { clear(m, 1); }, clear);
 }
 
 void SetPairs::count_partners() noexcept {
@@ -476,18 +528,22 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
   return static_cast<std::uint32_t>(std::ceil(largest));
 }
 
-StepEnergy SetPairs::give_forces(const ForceColumns& columns) const noexcept {
+StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
   const auto give_force = [&](std::size_t m) {
     double* force = columns.force + column_[m];
     for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
   };
   if (!surfaces_.empty()) {
-    WorkSum sum;
-    visit_with_forces([&](std::size_t m) {
-      give_force(m);
-      add_work(m, sum);
-    });
-    return sum.energy();
+    MemberWorks sum;
+    visit_runs(
+        [&](std::size_t m) {
+          give_force(m);
+          add_work(m, sum);
+        },
+        [&](std::size_t first, std::size_t count) {
+          kernel_.give_forces(values_from(first), count, columns.force + column_[first], sum);
+        });
+    return energy_of(sum);
   }
   StepEnergy work;
   visit_active([&](std::size_t m) {

@@ -1,7 +1,6 @@
 // sim_node/engine/pairs/set_pairs.h -- the pairs of one set liaison, in motion.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -125,6 +124,10 @@ class SetPairs {
   void visit_active(Visit visit) const noexcept;
   template <class Visit>
   void visit_with_forces(Visit visit) const noexcept;
+  template <class VisitOne, class VisitRun>
+  void visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept;
+  std::size_t run_at(std::size_t place) const noexcept;
+  MemberValues values_from(std::size_t member) noexcept;
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {
     return never_rests[state_machine_] || !neighbours_.is_whole();
   }
@@ -149,7 +152,7 @@ class SetPairs {
   std::size_t room_for_friction() const noexcept;
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
-  StepEnergy give_forces(const ForceColumns& columns) const noexcept;
+  StepEnergy give_forces(const ForceColumns& columns) noexcept;
   void count_partners() noexcept;
   std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
@@ -159,15 +162,8 @@ class SetPairs {
                             std::size_t count) noexcept;
   std::size_t gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
                                 std::size_t candidates) noexcept;
-  /// Sums of forces times displacements [J].
-  struct WorkSum {
-    std::array<double, 4> all{};
-    std::array<double, 4> viscous{};
-
-    StepEnergy energy() const noexcept;
-  };
   void take_position(std::size_t member, const ForceColumns& columns) noexcept;
-  void add_work(std::size_t member, WorkSum& sum) const noexcept;
+  void add_work(std::size_t member, MemberWorks& sum) const noexcept;
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
   void pad_at_surfaces() noexcept;
@@ -188,10 +184,11 @@ class SetPairs {
   std::size_t pairs_of_ports_;             // of those moved from outside, at most
   std::vector<std::uint32_t> column_;      // of the MAT of each member
   std::vector<std::uint32_t> own_column_;  // of each member here; empty without surfaces
-  std::vector<double> is_mass_;            // of each member: 1 or 0
-  std::vector<double> radius_;  // of each member [m]; empty when the rest length is given
-  double rest_length_;          // [m]
-  double range_;                // [m]
+  std::vector<bool> is_run_;     // of each batch of members: their MATs follow one another
+  std::vector<double> is_mass_;  // of each member: 1 or 0
+  std::vector<double> radius_;   // of each member [m]; empty when the rest length is given
+  double rest_length_;           // [m]
+  double range_;                 // [m]
   PartnerShare share_;
   Path path_ = Path::kAnyStateMachine;
   LinearPair linear_;
