@@ -148,6 +148,7 @@ matter:
             "unknown key 'plane' in matter 'a'",
             "known keys: kind, driven, fixed, count, mass_kg, ball, center_m, radius_m, liaison, "
             "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest, tension_n, "
+            "medium_viscosity_n_s_per_m, "
             "velocity_m_per_s, spin_rad_per_s, displacement_m, drawn_radius_m"},
         BadScene{kHead3,
                  R"(matter:
@@ -162,6 +163,7 @@ matter:
                  "known keys: kind, driven, fixed, count, mass_kg, ball, at_m, liaison, "
                  "stiffness_n_per_m, "
                  "viscosity_n_s_per_m, rest_m, rest, tension_n, layout_at_m, layout_spacing_m, "
+                 "medium_viscosity_n_s_per_m, "
                  "velocity_m_per_s, displacement_m, drawn_radius_m"},
         BadScene{kHead2,
                  R"(matter:

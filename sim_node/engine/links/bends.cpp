@@ -50,12 +50,15 @@ StepEnergy BendArray::add_forces(const ForceColumns& columns) noexcept {
     const Vec3 bend = bend_in(columns.position);
     const Vec3 before = bend_in(columns.delayed);
     const Vec3 moved = bend - before;
-    const Vec3 viscous = viscous_moment(row, bend, moved);
     work.elastic += 0.5 * row.stiffness * dot(bend + before, moved);
-    work.dissipated += 0.5 * dot(viscous + last_viscous_moment(l), moved);
-    std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * l);
+    Vec3 moment = row.stiffness * bend;
+    if (row.viscosity_over_dt > 0.0) {
+      const Vec3 viscous = viscous_moment(row, bend, moved);
+      work.dissipated += 0.5 * dot(viscous + last_viscous_moment(l), moved);
+      std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * l);
+      moment += viscous;
+    }
 
-    const Vec3 moment = row.stiffness * bend + viscous;
     const Vec3 on_a = row.shape.force_on_a(moment);
     const Vec3 on_c = row.shape.force_on_c(moment);
     add(columns.force, row.mat_a, on_a);
