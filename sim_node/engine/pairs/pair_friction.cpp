@@ -78,7 +78,7 @@ const double* PairFriction::recall(PairBlock& block) noexcept {
       array(kStretchY)[i] = old->y;
       array(kStretchZ)[i] = old->z;
       array(kPhase)[i] = old->mode % 2 != 0 ? kSlides : kSticks;
-      array(kModeBefore)[i] = old->mode;
+      if (!is_one_) array(kModeBefore)[i] = old->mode;
       if (shows_slid_)
         array(kSlid)[i] = std::sqrt(old->x * old->x + old->y * old->y + old->z * old->z);
     }

@@ -455,21 +455,16 @@ void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const PairRow row = rows.pairs;
-  const FrictionOfBatch<Lanes> of_all(terms.of_all);
+  FrictionOfBatch<Lanes> term(terms.of_all);
+  const bool unit_vectors = terms.unit_vectors;
   const Row shortest = Lanes::every(kShortestStretch);
   const Row sticks = Lanes::every(kSticks);
   const Row slides = Lanes::every(kSlides);
   const Row one = Lanes::every(1.0);
   const Row none = Lanes::zero();
   for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
-    const auto term = [&]() noexcept {
-      if constexpr (kOfEach) {
-        return FrictionOfBatch<Lanes>(terms.of_each, i);
-      } else {
-        return of_all;
-      }
-    }();
-    const Row reach = terms.unit_vectors ? one : Lanes::load(row.length + i);
+    if constexpr (kOfEach) term = FrictionOfBatch<Lanes>(terms.of_each, i);
+    const Row reach = unit_vectors ? one : Lanes::load(row.length + i);
     const Row push = none - Lanes::load(factor + i) * reach;
     auto touches = Lanes::less(none, push);
     if constexpr (kOfEach) touches = Lanes::both(touches, Lanes::less(none, term.stiffness));
