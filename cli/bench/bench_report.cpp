@@ -1,11 +1,16 @@
 // cli/bench/bench_report.cpp
 #include "cli/bench/bench_report.h"
 
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "cli/bench/temporary_folder.h"
 #include "cli/run/gnuplot.h"
 #include "cli/text_file.h"
 
@@ -22,18 +27,30 @@ json json_of(const LinkTimes& times) {
           {"cordis_s", times.engine_s}};
 }
 
+/// What disturbed the measurement, a sentence each; empty when nothing did.
+std::string disturbances_of(const BenchReport& report) {
+  constexpr double kSteady = 0.05;
+  const EngineFigures& engine = report.engine;
+  std::string text = report.machine.disturbances();
+  if (std::abs(engine.addition_at_end_s - engine.addition_s) > kSteady * engine.addition_s)
+    text += fmt::format(
+        "{}The clock of the core changed: an addition took {:.2f} ns, then {:.2f} ns.",
+        text.empty() ? "" : " ", 1e9 * engine.addition_s, 1e9 * engine.addition_at_end_s);
+  return text;
+}
+
 json or_null(const std::optional<double>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-json json_of(const MachineFigures& machine) {
+json json_of(const MachineFigures& machine, const std::string& disturbances) {
   return {{"processor", machine.processor},
           {"cores", machine.cores},
           {"stolen_share", or_null(machine.stolen_share)},
           {"load", or_null(machine.load)},
           {"lowest_mhz", or_null(machine.lowest_mhz)},
           {"highest_mhz", or_null(machine.highest_mhz)},
-          {"disturbances", machine.disturbances()}};
+          {"disturbances", disturbances}};
 }
 
 json json_of(const EngineFigures& engine) {
@@ -74,7 +91,7 @@ std::string machine_text(const BenchReport& report) {
   const std::string text =
       fmt::format("Cordis {} on {}, {} cores, {}\n", report.version, machine.processor,
                   machine.cores, report.engine.vector_width);
-  const std::string disturbances = machine.disturbances();
+  const std::string disturbances = disturbances_of(report);
   return text + (disturbances.empty() ? "" : "warning: " + disturbances + "\n");
 }
 
@@ -89,7 +106,7 @@ std::string force_loop_text(const BenchReport& report) {
       loop.p99_us, loop.longest_us, 100.0 * loop.late_share);
 }
 
-std::string script_of(const BenchReport& report, const std::string& svg) {
+std::string script_of(const BenchReport& report) {
   std::string plain;
   std::string engine;
   for (const LinkTimes& times : report.engine.by_size) {
@@ -99,9 +116,8 @@ std::string script_of(const BenchReport& report, const std::string& svg) {
   const std::string machine = fmt::format("{}, {}, Cordis {}", report.machine.processor,
                                           report.engine.vector_width, report.version);
   return "set terminal svg size 760,460 font 'sans-serif,12' background rgb 'white'\n"
-         "set output " +
-         gnuplot_quoted(svg) +
-         "\nset logscale x\nset format x '10^{%T}'\nset yrange [0:*]\nset grid linecolor rgb "
+         "set output 'chart.svg'\nset logscale x\nset format x '10^{%T}'\nset yrange [0:*]\nset "
+         "grid linecolor rgb "
          "'#dddddd'\n"
          "set xlabel 'masses of a net in 3-D'\nset ylabel 'time of a link and step [ns]'\n"
          "set key left top\nset bmargin 5\nset label 1 " +
@@ -140,22 +156,21 @@ std::string bench_text(const BenchReport& report) {
 
 std::string bench_json(const BenchReport& report) {
   const json text{{"version", report.version},
-                  {"machine", json_of(report.machine)},
+                  {"machine", json_of(report.machine, disturbances_of(report))},
                   {"engine", json_of(report.engine)},
                   {"force_loop", report.force_loop ? json_of(*report.force_loop) : json(nullptr)},
                   {"seconds", report.seconds}};
   return text.dump(2) + "\n";
 }
 
-void draw_bench_chart(const BenchReport& report, const std::filesystem::path& file) {
-  std::filesystem::path script = std::filesystem::absolute(file);
-  const std::string svg = script.filename().string();
-  script += ".gp";
-  write_text_file(script, script_of(report, svg));
-  const bool is_drawn = run_gnuplot(script);
-  std::filesystem::remove(script);
-  if (!is_drawn)
-    throw std::runtime_error("cannot draw " + file.string() + ": gnuplot is missing or failed");
+std::string bench_chart(const BenchReport& report) {
+  const TemporaryFolder folder;
+  const std::filesystem::path script = folder.path() / "chart.gp";
+  write_text_file(script, script_of(report));
+  if (!run_gnuplot(script))
+    throw std::runtime_error("cannot draw the chart: gnuplot is missing or failed");
+  std::ifstream file(folder.path() / "chart.svg");
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace cordis::cli

@@ -1,7 +1,6 @@
 // cli/bench/bench_report.h -- what `cordis bench` prints and writes.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -26,10 +25,10 @@ std::string bench_text(const BenchReport& report);
 /// One JSON object: SI units, the names of the figures as in `cordis bench --help`.
 std::string bench_json(const BenchReport& report);
 
-/// Draws the time of a link against the size of a net, of the plain loop and of the engine, with
-/// gnuplot.
-/// @param file  where the SVG goes
-/// @throws std::runtime_error when it cannot be written, or gnuplot is missing
-void draw_bench_chart(const BenchReport& report, const std::filesystem::path& file);
+/// The time of a link against the size of a net, of the plain loop and of the engine, as gnuplot draws
+/// it.
+/// @return SVG
+/// @throws std::runtime_error when gnuplot is missing or fails
+std::string bench_chart(const BenchReport& report);
 
 }  // namespace cordis::cli

@@ -25,7 +25,8 @@ int run(const BenchWords& words) {
   // Files that cannot be written are known before anything is measured.
   std::optional<OutputFile> json_file;
   if (!words.json_file.empty()) json_file.emplace(words.json_file);
-  if (!words.chart_file.empty()) OutputFile(words.chart_file).flush();
+  std::optional<OutputFile> chart_file;
+  if (!words.chart_file.empty()) chart_file.emplace(words.chart_file);
   const auto begin = std::chrono::steady_clock::now();
   BenchEffort effort;
   if (words.quick) effort = {.rounds = 3, .largest_side = 200};
@@ -41,11 +42,12 @@ int run(const BenchWords& words) {
   report.seconds = took.count();
   progress.clear();
   std::fputs(bench_text(report).c_str(), stdout);
-  if (json_file) {
-    json_file->write(bench_json(report));
-    json_file->flush();
-  }
-  if (!words.chart_file.empty()) draw_bench_chart(report, words.chart_file);
+  const auto write = [](std::optional<OutputFile>& file, const std::string& text) {
+    file->write(text);
+    file->flush();
+  };
+  if (json_file) write(json_file, bench_json(report));
+  if (chart_file) write(chart_file, bench_chart(report));
   return report.force_loop ? kSuccess : kFailure;
 }
 
@@ -59,11 +61,12 @@ void add_bench_verb(CommandLine& line) {
               "Also draw the time of a link against the size of a net (SVG, with gnuplot)");
   verb.flag("--quick", words->quick, "Less exact, without the nets above 40,000 masses");
   verb.examples(
-      "Every figure of the engine stands beside a plain C++ loop over the same network, measured\n"
+      "The time of a link stands beside that of a plain C++ loop over the same network, measured\n"
       "in turns on one core, in processor time. Close other programs: a warning says when the\n"
       "machine was not quiet. It takes less than two minutes.\n"
       "Keys of the JSON, in SI units: version, seconds; machine: processor, cores, stolen_share,\n"
-      "load, lowest_mhz, highest_mhz, disturbances; engine: vector_width, addition_s, ball_s,\n"
+      "load, lowest_mhz, highest_mhz, disturbances; engine: vector_width, addition_s,\n"
+      "addition_at_end_s, ball_s,\n"
       "by_dimension and by_size (dimension, masses, links, plain_s, cordis_s of a link and step),\n"
       "largest_at_1_khz (kind, unit, count, steps_per_period); force_loop: exchanges_per_s,\n"
       "p50_s, p99_s, longest_s, late_share.\n"

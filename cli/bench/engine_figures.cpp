@@ -105,6 +105,7 @@ EngineFigures measure_engine(const BenchEffort& effort,
   progress("the largest agglomerate at 1 kHz");
   figures.largest.push_back(largest({"agglomerate in 2-D, 4 steps a period", "balls", 0, 0.0, 4},
                                     effort.rounds, agglomerate));
+  figures.addition_at_end_s = time_of_addition(effort.rounds);
   return figures;
 }
 

@@ -31,8 +31,9 @@ struct LargestScene {
 
 struct EngineFigures {
   std::string vector_width;
-  double addition_s =
-      0.0;  ///< of a double to the sum before: the control, it shows the clock of the core
+  /// Of a double to the sum before: the control, which shows the clock of the core.
+  double addition_s = 0.0;
+  double addition_at_end_s = 0.0;       ///< the same after everything else
   std::vector<LinkTimes> by_dimension;  ///< nets of 10,000 masses
   std::vector<LinkTimes> by_size;       ///< nets in 3-D
   double ball_s = 0.0;                  ///< of a ball of an agglomerate of 2,500, and step

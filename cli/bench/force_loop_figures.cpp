@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
-#include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "cli/bench/temporary_folder.h"
 #include "cli/exit_code.h"
 #include "cli/programs.h"
 #include "cli/run/supervisor.h"
@@ -49,28 +49,6 @@ const char* const kNodes = R"(nodes:
   sim: {node: sim_node, scene: scene.yaml}
   key: {node: device_node, device: key.yaml}
 )";
-
-/// A folder that is gone with this.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "cordis-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      throw std::runtime_error("cannot make a folder in " + fs::temp_directory_path().string());
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Keeps what a session prints, and ends it when it takes too long.
 class SessionWatcher : public Watcher {

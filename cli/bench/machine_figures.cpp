@@ -31,16 +31,12 @@ void read_clocks(const machine::SystemFiles& files, MachineFigures& figures) {
 std::string MachineFigures::disturbances() const {
   constexpr double kMuchStolen = 0.01;
   constexpr double kMuchLoad = 2.0;  // the measurement itself is one
-  constexpr double kSteady = 1.1;
   std::string text;
   if (stolen_share && *stolen_share > kMuchStolen)
     text +=
         fmt::format("The hypervisor took {:.2g} % of the processor time. ", 100.0 * *stolen_share);
   if (load && *load > kMuchLoad)
     text += fmt::format("Other programs ran: the load was {:.1f}. ", *load);
-  if (lowest_mhz && highest_mhz && *highest_mhz > kSteady * *lowest_mhz)
-    text += fmt::format("The clock of the cores was between {:.0f} and {:.0f} MHz. ", *lowest_mhz,
-                        *highest_mhz);
   if (!text.empty()) text.pop_back();
   return text;
 }

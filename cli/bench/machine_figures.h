@@ -15,7 +15,7 @@ struct MachineFigures {
   unsigned cores = 0;
   std::optional<double> stolen_share;  ///< of processor time, by a hypervisor
   std::optional<double> load;          ///< programs that want a core, of the last minute
-  std::optional<double> lowest_mhz;    ///< of the cores, at begin and end
+  std::optional<double> lowest_mhz;    ///< of the cores at begin and end, those that slept included
   std::optional<double> highest_mhz;
 
   /// What disturbed the measurement, a sentence each on one line; empty when nothing does.

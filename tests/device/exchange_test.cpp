@@ -523,6 +523,25 @@ TEST(Exchange, SendsNothingWhileItsDriverHasNoDevice) {
   EXPECT_EQ(rig.channel.sent.back().sample, 3u) << "no number is missing";
 }
 
+TEST(Exchange, SendsNothingBeforeItsDriverHasADeviceThatSensesANumber) {
+  for (const bool present : {false, true}) {
+    Rig rig(false);
+    rig.driver.present = present;
+    rig.driver.lies = present;
+    Exchange exchange({.config = rig.config,
+                       .driver = rig.driver,
+                       .channel = rig.channel,
+                       .meter = rig.meter,
+                       .role = Role::kMass,
+                       .series = {kEpoch, 0},
+                       .lockstep = false,
+                       .clock = &now,
+                       .since_boot = &since_boot});
+    exchange.send_sample();
+    EXPECT_TRUE(rig.channel.sent.empty()) << present;
+  }
+}
+
 TEST(Exchange, StandsByWhileAnotherNodeIsAnswered) {
   Rig rig(false);
   const auto period_of_another = [&rig] {

@@ -79,6 +79,19 @@ TEST_F(Kfb1Test, SendsTheDeviceTheLargestForceOfItsFile) {
   })) << board.forces[0];
 }
 
+TEST_F(Kfb1Test, ALargestForceOfManyNewtonsArrivesWhole) {
+  Kfb1Board board;
+  board.plug.into_serial_line(link());
+  AxisLayout layout = layout_of(2);
+  layout.force_limit_n = 70.0;  // more millinewtons than 16 bits hold
+  const auto key = driver("kfb1", port(), layout);
+  key->start(Role::kMass);
+
+  EXPECT_TRUE(until(*key, {9.0, 0.0}, [&](bool there) {
+    return there && std::abs(board.forces[0] - 0.9 * 32767) < 2;
+  })) << board.forces[0];
+}
+
 TEST_F(Kfb1Test, SaysOrCountsAtEachConnectionWhereTheDeviceIsNotWhatItsFileSays) {
   const auto said_of = [&](double travel_m, double force_limit_n) {
     AxisLayout layout = layout_of(2);  // the board: 0.04 m, 10 N

@@ -72,6 +72,8 @@ StateMachine sticking(double stiffness, double viscosity, double reach) {
 StateMachine forgetful() {
   StateMachine state_machine = sticking(60.0, 0.05, 0.03);
   state_machine.states[kBound].last_exit = 4;
+  state_machine.states[kBound].dissipation =
+      engine::Table({-1.0, -0.1, 0.0, 0.1, 1.0}, {-0.1, -0.03, 0.0, 0.03, 0.1});
   LinkState worn = state_machine.states[kBound];
   worn.name = "worn";
   worn.stiffness = 20.0;
@@ -189,6 +191,30 @@ TEST(SetStates, OfABoundPairAreKeptBeyondTheRange) {
   EXPECT_EQ(bound[0].mat_b, 1U);
   EXPECT_EQ(bound[0].state, kBound);
   EXPECT_LT(std::abs(world.energy().residual()), 1e-11 * world.energy().largest);
+}
+
+TEST(SetStates, OfAPairThatIsFreeAgainBeyondTheRangeHaveNoForce) {
+  NetworkDescription scene = cloud(0, 0.0, 0.0, 3);
+  scene.mats = {mass(1.0, Vec3::Zero(), Vec3(0.5, 0, 0)), mass(1.0, Vec3(0.055, 0, 0))};
+  scene.radius = {0.03, 0.03};
+  StateMachine state_machine =
+      sticking(2.0, 0.0, 0.1);  // torn at 0.16 m, more than twice the range
+  state_machine.states[kFree].stiffness = 50.0;
+  World world = make_world(with_set(scene, state_machine, 0.065, -1.0));
+  Vec3 velocity = Vec3::Zero();
+  int torn_for = 0;
+
+  for (int n = 0; n < 3000 && torn_for < 100; ++n) {
+    world.step();
+    if (world.change_count(0, kBound, kFree) == 0) continue;
+    if (++torn_for == 1) {
+      ASSERT_GT((world.position(1) - world.position(0)).norm(), 0.13);
+      velocity = world.velocity(0);
+    }
+    EXPECT_LT((world.velocity(0) - velocity).norm(), 1e-12) << torn_for;
+  }
+
+  EXPECT_EQ(torn_for, 100);
 }
 
 TEST(SetStates, OfABallThatIsNoLongerFiniteAreForgottenAndItIsReported) {

@@ -183,6 +183,39 @@ TEST(Recover, MakesATakeWholeOfWhichOneIndexWasMovedBefore) {
   }
 }
 
+/// A reader that looks for a time passes over a chunk whose record says another one.
+TEST(Recover, GivesAChunkTheTimesOfItsMessages) {
+  for (const std::uint32_t chunk_bytes : {1u, 3000u}) {  // a chunk of one message, and of many
+    const TakeFolder folder;
+    std::mt19937 random(7);
+    WriterConfig config;
+    config.chunk_bytes = chunk_bytes;
+    const auto path = folder / "take.mcap";
+    write_random_take(path, random, config, 60);
+    std::vector<char> bytes = contents_of(path);
+    const std::vector<ChunkIndex> chunks = Reader(path).chunks();
+    ASSERT_GT(chunks.size(), 2u);
+    constexpr std::size_t kHead = 1 + 8;  // of a record, before its start and end
+    for (const std::size_t field : {std::size_t{0}, std::size_t{8}}) {
+      std::vector<char> changed = bytes;
+      const std::uint64_t wrong = 12345;
+      std::memcpy(changed.data() + chunks[1].offset + kHead + field, &wrong, sizeof wrong);
+      write_file(path, changed);
+      const TakeCheck check = check_take(path);
+      const bool is_reported = std::ranges::any_of(check.faults, [](const Fault& fault) {
+        return fault.text == "chunk: its times are not those of its messages";
+      });
+      EXPECT_TRUE(is_reported) << chunk_bytes << " " << field;
+
+      recover(path);
+
+      EXPECT_TRUE(check_take(path).faults.empty());
+      EXPECT_EQ(Reader(path).chunks()[1].start_nsec, chunks[1].start_nsec);
+      EXPECT_EQ(Reader(path).chunks()[1].end_nsec, chunks[1].end_nsec);
+    }
+  }
+}
+
 TEST(Recover, MakesATakeWholeWhoseIndexIsWrittenTwice) {
   const TakeFolder folder;
   const auto path = folder / "twice.mcap";

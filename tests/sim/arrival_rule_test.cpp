@@ -162,5 +162,22 @@ TEST(ArrivalRule, ADeviceThatPausesIsOwedNoMoreThanTwo) {
   EXPECT_LE(held, 2 * 9) << "two after each pause";
 }
 
+TEST(ArrivalRule, RestartsAtAnotherRateAsIfItWereNew) {
+  const std::int64_t now = kRuleStart + 123'456'789;
+  ArrivalRule restarted(kSceneRate, kRuleStart);
+  std::vector<ArrivalRule::Device> devices{{.id = 1, .sent = 5, .plays = true}};
+  restarted.begin_wait(devices);
+  restarted.begin_tick(devices, kRuleStart + kScenePeriod);
+
+  restarted.restart(250.0, now);
+
+  ArrivalRule fresh(250.0, now);
+  EXPECT_EQ(restarted.grid().end_nsec(), fresh.grid().end_nsec());
+  for (ArrivalRule* rule : {&restarted, &fresh}) rule->begin_wait(devices);
+  EXPECT_EQ(restarted.is_due(devices, now + 1), fresh.is_due(devices, now + 1));
+  devices[0].sent = 6;
+  EXPECT_TRUE(restarted.is_due(devices, now + 1));
+}
+
 }  // namespace
 }  // namespace cordis::sim
