@@ -31,7 +31,7 @@ struct LargestScene {
 
 struct EngineFigures {
   std::string vector_width;
-  /// Of a double to the sum before: the control, which shows the clock of the core.
+  /// The time of adding a double to the sum before: the control, which shows the clock of the core.
   double addition_s = 0.0;
   double addition_at_end_s = 0.0;       ///< the same after everything else
   std::vector<LinkTimes> by_dimension;  ///< nets of 10,000 masses
