@@ -8,34 +8,56 @@ namespace cordis::sim {
 namespace {
 
 using engine::Vec3;
+using plan::LoadBound;
 using plan::PortLoad;
 
-/// The viscosity that brakes the centre of a body [N s/m].
-double outer_viscosity(const plan::LiaisonGraph& graph, const scene::Port& port, bool least) {
+/// What brakes each mass of a body from outside [N s/m], in their order.
+std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const scene::Port& port,
+                                      LoadBound bound) {
   std::vector<bool> is_inside(graph.inverse_mass.size());
-  double sum = 0.0;
-  for (const scene::BodyMass& mass : port.body) {
-    is_inside[mass.mat] = true;
-    sum += graph.medium_viscosity[mass.mat];
-  }
+  std::vector<double> of_mat = graph.medium_viscosity;
+  for (const scene::BodyMass& mass : port.body) is_inside[mass.mat] = true;
   for (const plan::Edge& edge : graph.edges) {
-    if (is_inside[edge.mat_a] == is_inside[edge.mat_b] || (least && !edge.bounded)) continue;
+    if (is_inside[edge.mat_a] == is_inside[edge.mat_b]) continue;
+    if (bound == LoadBound::kMin && !edge.bounded) continue;
     if (edge.liaison.kind == engine::LiaisonKind::kBend) continue;  // its edges bound it from above
-    sum += edge.viscosity;
+    of_mat[is_inside[edge.mat_a] ? edge.mat_a : edge.mat_b] += edge.viscosity;
   }
-  return sum;  // contacts may end
+  std::vector<double> viscosities;  // contacts may end
+  for (const scene::BodyMass& mass : port.body) viscosities.push_back(of_mat[mass.mat]);
+  return viscosities;
 }
 
-template <class LoadOf>
-PortLoad load_of_body(const plan::LiaisonGraph& graph, const scene::Scene& scene,
-                      const scene::Port& port, bool least, LoadOf load_of) {
+/// The viscosity that brakes the centre of a body [N s/m]. At least: with V = sum s_i v_i, no motion
+/// loses less than V^2 / sum(s_i^2 / Z_i) [Cauchy and Schwarz]. At most: all masses at one speed.
+double viscosity_of_centre(const plan::LiaisonGraph& graph, const scene::Port& port,
+                           LoadBound bound) {
+  const std::vector<double> outer = outer_viscosities(graph, port, bound);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < outer.size(); ++i) {
+    const double share = port.body[i].share;
+    if (bound == LoadBound::kMax) {
+      sum += outer[i];
+    } else if (outer[i] > 0.0) {
+      sum += share * share / outer[i];
+    } else {
+      return 0.0;
+    }
+  }
+  return bound == LoadBound::kMax || sum == 0.0 ? sum : 1.0 / sum;
+}
+
+PortLoad load_of(const plan::LiaisonGraph& graph, const scene::Scene& scene,
+                 const scene::Port& port, LoadBound bound) {
+  const std::vector<PortLoad> loads = plan::port_loads(graph, bound);
+  if (port.body.empty()) return loads[port.mat];
   // The limits take K + w Z / dt of a mass, with w = 2 or 4.
   const double rate = 1.0 / scene.network.step;
   PortLoad load;
-  load.viscosity = outer_viscosity(graph, port, least);
+  load.viscosity = viscosity_of_centre(graph, port, bound);
   for (const double weight : {2.0, 4.0}) {
     for (const scene::BodyMass& part : port.body) {
-      const PortLoad own = load_of(graph, part.mat);
+      const PortLoad& own = loads[part.mat];
       const double number = (own.stiffness + weight * rate * own.viscosity) / part.share;
       load.stiffness = std::max(load.stiffness, number - weight * rate * load.viscosity);
     }
@@ -54,14 +76,12 @@ double mass_of(const scene::Scene& scene, const scene::Port& port) {
 
 PortLoad max_load_of(const plan::LiaisonGraph& graph, const scene::Scene& scene,
                      const scene::Port& port) {
-  if (port.body.empty()) return plan::port_load(graph, port.mat);
-  return load_of_body(graph, scene, port, /*least=*/false, plan::port_load);
+  return load_of(graph, scene, port, LoadBound::kMax);
 }
 
 PortLoad min_load_of(const plan::LiaisonGraph& graph, const scene::Scene& scene,
                      const scene::Port& port) {
-  if (port.body.empty()) return plan::min_port_load(graph, port.mat);
-  return load_of_body(graph, scene, port, /*least=*/true, plan::min_port_load);
+  return load_of(graph, scene, port, LoadBound::kMin);
 }
 
 Vec3 position_of(const engine::World& world, const scene::Port& port) noexcept {

@@ -114,6 +114,64 @@ TEST(PortBody, AHandOfTheStiffnessThatIsNamedStaysStill) {
   }
 }
 
+TEST(PortBody, IsBrakedForCertainByWhatNoneOfItsMassesEscapes) {
+  const auto viscosity = [](const std::string& core, const std::string& skin) {
+    const scene::Scene scene = sound(
+        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  core: {kind: mass, at_m: 0, "
+        "mass_kg: 1, medium_viscosity_n_s_per_m: " +
+        core +
+        "}\n  skin: {kind: mass, at_m: 1, mass_kg: 0.001, medium_viscosity_n_s_per_m: " + skin +
+        "}\nliaisons: {k: {kind: spring, stiffness_n_per_m: 10, rest_m: 1}}\n"
+        "links: [{liaison: k, between: [core, skin]}]\n"
+        "ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}\n");
+    return min_load_of(plan::liaison_graph(scene.network), scene, scene.ports.front()).viscosity;
+  };
+  EXPECT_EQ(viscosity("0", "5"), 0.0);
+  const double share = 1.0 / 1.001;
+  EXPECT_NEAR(viscosity("0.5", "5"), 1.0 / (share * share / 0.5 + 1e-6 * share * share / 5.0),
+              1e-12);
+  EXPECT_NEAR(viscosity("2", "0.002"), 2.002, 1e-12) << "in proportion to the masses: their sum";
+}
+
+TEST(PortBody, AHandThatIsLateStaysStillBelowTheStiffnessThatIsNamed) {
+  std::mt19937 random(test::test_seed());
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto decade = [&](double low, double high) {
+      return std::to_string(low * std::pow(high / low, any(random)));
+    };
+    const scene::Scene scene = sound(
+        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  nail: {kind: fixed, at_m: 2}\n"
+        "  core: {kind: mass, at_m: 0, mass_kg: " +
+        decade(0.1, 1) + ", medium_viscosity_n_s_per_m: " + decade(0.1, 2) +
+        "}\n  skin: {kind: mass, at_m: 1, mass_kg: " + decade(0.01, 0.1) +
+        "}\nliaisons:\n  k: {kind: spring, rest_m: 1, stiffness_n_per_m: " + decade(5, 50) +
+        "}\n  z: {kind: damper, viscosity_n_s_per_m: " + decade(0.1, 4) +
+        "}\nlinks:\n  - {liaison: k, between: [core, skin]}\n  - {liaison: z, between: [skin, "
+        "nail]}\n"
+        "ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}\n");
+    const scene::Port& port = scene.ports.front();
+    const plan::PortLoad load = min_load_of(plan::liaison_graph(scene.network), scene, port);
+    const double stiffness =
+        plan::largest_hand_stiffness(load, mass_of(scene, port), plan::PortLoop{1e-3, 1.0, 1});
+    engine::World world(std::make_shared<const engine::Network>(scene.network));
+    push(world, port, Vec3(5, 0, 0));
+    world.step();
+    const double start = world.energy().kinetic + world.energy().elastic;
+    double before = 0.0;  // where the centre was a period ago
+    double last_way = 0.0;
+    for (int n = 0; n < 40000; ++n) {
+      const double way = (position_of(world, port) - port.rest).x();
+      push(world, port, Vec3(-0.95 * stiffness * before, 0, 0));
+      before = way;
+      last_way = std::max(n < 39000 ? 0.0 : last_way, std::abs(way));
+      world.step();
+    }
+    EXPECT_GT(start, 0.0);
+    EXPECT_LT(last_way, 1.0) << stiffness;  // what grows is beyond all numbers by then
+  }
+}
+
 TEST(PortBody, OfOneMassIsAsAPortOfItsOwn) {
   const scene::Scene scene = sound(R"(cordis: 1
 space: 1
@@ -154,6 +212,23 @@ TEST(PortBody, SaysWhatItCannotMove) {
             "'bob[0]' is moved by port 'a' already");
   EXPECT_EQ(problem("{device: d, axes: [1], role: liaison, of: \"bob[2]\", mass_kg: 1}"),
             "unknown key 'mass_kg' in port 'b'");
+}
+
+TEST(PortBody, HasNoMassThatAnotherPortPushes) {
+  const auto problem = [](const std::string& ports) {
+    config::Problems problems;
+    scene::load_scene_text(
+        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter: {bob: {kind: mass, mass_kg: 1, at_m: "
+        "1}}\nports:\n" +
+            ports,
+        "t", problems);
+    return problems.all().empty() ? "" : problems.all()[0].message;
+  };
+  const std::string finger =
+      "  finger: {device: d, axes: [0], role: liaison, at_m: 0, mass_kg: 1}\n";
+  EXPECT_EQ(problem(finger + "  hand: {device: d, axes: [1], role: liaison, of: bob}\n"), "");
+  EXPECT_EQ(problem(finger + "  hand: {device: d, axes: [1], role: liaison, of: [bob, finger]}\n"),
+            "'finger.handle[0]' is moved by port 'finger' already");
 }
 
 }  // namespace

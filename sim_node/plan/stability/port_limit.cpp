@@ -15,31 +15,6 @@ using Complex = std::complex<double>;
 constexpr int kFrequencies = 4000;  // up to half the rate of the device
 constexpr int kBisections = 60;
 
-/// @param least  of what hangs there, else the most
-PortLoad load_of(const LiaisonGraph& graph, std::uint32_t mat, bool least) {
-  PortLoad load;
-  const auto add = [&](double count, double stiffness, double viscosity, bool bounded) {
-    if (least && !bounded) return;
-    load.stiffness += count * stiffness;
-    load.viscosity += count * viscosity;
-  };
-  for (const Edge& edge : graph.edges) {
-    if (edge.mat_a != mat && edge.mat_b != mat) continue;
-    if (least && edge.liaison.kind == LiaisonKind::kBend)
-      continue;  // its edges are a bound from above
-    add(1.0, edge.stiffness, edge.viscosity, edge.bounded);
-  }
-  for (const ContactBound& crowd : graph.crowds) {
-    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
-      if (crowd.members[i] != mat) continue;
-      const double count = least ? std::min(1.0, crowd.neighbours[i]) : crowd.neighbours[i];
-      add(count, crowd.stiffness, crowd.viscosity, crowd.bounded);
-    }
-  }
-  load.viscosity += graph.medium_viscosity[mat];
-  return load;
-}
-
 /// (e^x - 1 - x) / x^2 for x <= 0.
 double phi2(double x) {
   // The difference of nearly equal numbers near 0: there its series.
@@ -184,12 +159,37 @@ double min_real_value(const Curve& curve) {
 
 }  // namespace
 
+std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound) {
+  const bool least = bound == LoadBound::kMin;
+  std::vector<PortLoad> loads(graph.inverse_mass.size());
+  const auto add = [&](std::uint32_t mat, double count, double stiffness, double viscosity) {
+    loads[mat].stiffness += count * stiffness;
+    loads[mat].viscosity += count * viscosity;
+  };
+  for (const Edge& edge : graph.edges) {
+    // The edges of a bend are a bound from above.
+    if (least && (!edge.bounded || edge.liaison.kind == LiaisonKind::kBend)) continue;
+    add(edge.mat_a, 1.0, edge.stiffness, edge.viscosity);
+    if (edge.mat_b != edge.mat_a) add(edge.mat_b, 1.0, edge.stiffness, edge.viscosity);
+  }
+  for (const ContactBound& crowd : graph.crowds) {
+    if (least && !crowd.bounded) continue;
+    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
+      const double count = least ? std::min(1.0, crowd.neighbours[i]) : crowd.neighbours[i];
+      add(crowd.members[i], count, crowd.stiffness, crowd.viscosity);
+    }
+  }
+  for (std::size_t mat = 0; mat < loads.size(); ++mat)
+    loads[mat].viscosity += graph.medium_viscosity[mat];
+  return loads;
+}
+
 PortLoad port_load(const LiaisonGraph& graph, std::uint32_t mat) {
-  return load_of(graph, mat, /*least=*/false);
+  return port_loads(graph, LoadBound::kMax)[mat];
 }
 
 PortLoad min_port_load(const LiaisonGraph& graph, std::uint32_t mat) {
-  return load_of(graph, mat, /*least=*/true);
+  return port_loads(graph, LoadBound::kMin)[mat];
 }
 
 double min_device_viscosity(const PortLoad& load, const PortLoop& loop) {

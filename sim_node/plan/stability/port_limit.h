@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/liaison_graph.h"
@@ -27,6 +28,12 @@ struct PortLoad {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< of the liaisons and, for a mass, of the medium [N s/m]
 };
+
+/// Which of the loads that a MAT may have.
+enum class LoadBound : std::uint8_t { kMax, kMin };
+
+/// port_load() or min_port_load() of all MATs. Cost: O(MATs + liaisons).
+std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound);
 
 /// At most: every set liaison with all the partners for which there is room around the MAT, and
 /// laws without a largest slope within their Reach. What is below a limit with this load is safe.

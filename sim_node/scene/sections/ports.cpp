@@ -316,7 +316,7 @@ void read_ports(Assembly& assembly, const Value& section) {
 
 void check_ports(Assembly& assembly) {
   PortFaults faults(assembly.problems);
-  std::map<std::uint32_t, const Port*> port_of_mass;  // of bodies
+  std::map<std::uint32_t, const Port*> port_of_mass;  // that takes a force of a device
   std::map<std::uint32_t, const Port*> first_of_device;
   std::map<std::pair<std::string, std::uint32_t>, const Port*> port_of_axis;
   for (const Port& port : assembly.scene.ports) {
@@ -335,11 +335,14 @@ void check_ports(Assembly& assembly) {
                                  "' has the role " + word_of(first->role) + " in port '" +
                                  first->name + "'");
     }
-    for (const BodyMass& mass : port.body) {
-      const auto [other, is_free] = port_of_mass.emplace(mass.mat, &port);
+    std::vector<std::uint32_t> pushed;
+    for (const BodyMass& mass : port.body) pushed.push_back(mass.mat);
+    if (port.body.empty() && port.role == Role::kLiaison) pushed.push_back(port.mat);
+    for (const std::uint32_t mat : pushed) {
+      const auto [other, is_free] = port_of_mass.emplace(mat, &port);
       if (is_free) continue;
-      faults.add(port.place, "'" + assembly.names.word_of(mass.mat, false) +
-                                 "' is moved by port '" + other->second->name + "' already");
+      faults.add(port.place, "'" + assembly.names.word_of(mat, false) + "' is moved by port '" +
+                                 other->second->name + "' already");
       break;
     }
     for (const std::uint32_t axis : port.axes) {
