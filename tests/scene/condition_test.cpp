@@ -321,6 +321,24 @@ TEST(Variable, OfAPartIsThatOfItsOwnCopyAndThenThatOfTheScene) {
   }
 }
 
+TEST(Variable, OfLinksWithoutANameComesAfterWhatTheSceneHasOfThatName) {
+  const Scene scene = sound_scene(
+      2, "liaisons:\n  lever: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n" +
+             until("latch", "lever.position_x_m > 4") +
+             "parts:\n"
+             "  door:\n"
+             "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
+             "    links:\n"
+             "      - {liaison: lever, between: [\"frame[0]\", \"frame[1]\"]}\n"
+             "      - {liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: catch}\n"
+             "matter:\n"
+             "  lever: {kind: fixed, at_m: [5, 0]}\n"
+             "  door: {part: door}\n");
+  World world = world_of(scene);
+  for (int n = 0; n < 3; ++n) world.step();
+  EXPECT_EQ(world.state_of(group_of(scene, "door.catch").first), 1u);
+}
+
 TEST(Variable, IsAskedForByAPartOfAParallelLiaisonAndByLinksOfMatter) {
   std::string text =
       falling(until("latch", "bolt.state == broken") + "  both: {parallel: [brittle, latch]}\n",

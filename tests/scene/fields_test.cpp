@@ -309,6 +309,14 @@ TEST(Medium, ModesWantOneDecayOfAllMasses) {
   };
   EXPECT_EQ(refusal("0.4"), "");
   EXPECT_NE(refusal("0.2").find("different masses in a medium"), std::string::npos);
+  config::Problems problems;
+  load_scene_text(
+      "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\nmatter:\n"
+      "  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}\n"
+      "  b: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.3}\n",
+      "t", problems);
+  EXPECT_NE(problems.text().find("masses with different viscosities of the medium"),
+            std::string::npos);
 }
 
 class BadFields : public testing::TestWithParam<BadScene> {};
@@ -326,6 +334,9 @@ const std::string kFixed =
     "matter: {w: {kind: fixed, at_m: [0, 0], medium_viscosity_n_s_per_m: ^1}, b: {kind: mass, "
     "mass_kg: 1, "
     "at_m: [0, 1]}}\n";
+const std::string kLed =
+    "matter: {w: {kind: mass, mass_kg: 1, at_m: [0, 0], medium_viscosity_n_s_per_m: ^1, driven: "
+    "{position_m: [\"sin(time_s)\", 0]}}, b: {kind: mass, mass_kg: 1, at_m: [0, 1]}}\n";
 const std::string kNegative =
     "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 1], medium_viscosity_n_s_per_m: ^-1}}\n";
 
@@ -341,6 +352,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2, kNoNumber.c_str(),
                  "'gravity_m_per_s2' in world is no finite number within 1e6 at 0 s", ""},
         BadScene{kHead2, kFixed.c_str(), "what is fixed or driven feels no medium", ""},
+        BadScene{kHead2, kLed.c_str(), "what is fixed or driven feels no medium", ""},
         BadScene{kHead2, kNegative.c_str(),
                  "'medium_viscosity_n_s_per_m' in matter 'b' must be >= 0, got -1", ""}));
 

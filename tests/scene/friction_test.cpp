@@ -124,6 +124,13 @@ INSTANTIATE_TEST_SUITE_P(
             "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
             "a condition of liaison 'a' asks for 'slip_m', which has no friction",
             "give it 'friction', or ask for slip_m_per_s"},
+        BadScene{
+            kHead2,
+            "liaisons:\n  a: {states: {x: {pulls: false, exits: [{to: x, when: age_s > 1, rest: "
+            "^slip_m + 1}]}}}\n"
+            "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+            "a rest length of liaison 'a' asks for 'slip_m', which has no friction",
+            "give it 'friction', or ask for slip_m_per_s"},
         BadScene{kHead2,
                  "liaisons:\n  a: {states: {x: {pulls: false, friction: ^some}}}\n"
                  "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",

@@ -84,6 +84,27 @@ TEST(SignalOfAWhole, MomentaOfAFreeBodyStayConstant) {
   EXPECT_NEAR(after.at("cy"), before.at("cy") - 1.0 * 2.0, 1e-10);
 }
 
+TEST(SignalOfAWhole, AngularMomentumIsKeptByIntegratorsAsTheDocumentsSay) {
+  const auto change = [](const std::string& integrator) {
+    std::string text = kFlyingDisc;
+    const std::string damper = ", viscosity_n_s_per_m: 0.02";
+    text.erase(text.find(damper), damper.size());  // symplectic4 takes none
+    config::Problems problems;
+    Scene scene = load_scene_text(
+        "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, integrator: " + integrator + "}\n" + text, "t",
+        problems);
+    EXPECT_EQ(problems.text(), "");
+    WholeRun run(std::move(scene));
+    const double before = run.values().at("spin");
+    run.step(2000);
+    return std::abs(run.values().at("spin") / before - 1.0);
+  };
+  for (const char* integrator : {"cordis", "symplectic4"}) {
+    EXPECT_LT(change(integrator), 1e-8) << integrator;
+  }
+  EXPECT_GT(change("implicit"), 1e-6);
+}
+
 TEST(SignalOfAWhole, MomentaAgreeWithSumsOverPositions) {
   WholeRun run(sound_scene(2, kFlyingDisc));
   run.step(99);
@@ -238,6 +259,33 @@ TEST(SignalOfAWhole, ContactForceIsWhatTheOtherBodyTakes) {
       has_touched = has_touched || values["ab"] != 0.0;
     }
     EXPECT_TRUE(has_touched);
+  }
+}
+
+TEST(SignalOfAWhole, ContactForceIsThereWithEveryIntegratorThatTakesSets) {
+  for (const char* law : {"{stiffness_n_per_m: 1000, pulls: false, range: rest}",
+                          "{elasticity: {kind: lennard_jones, depth_j: 0.001, diameter_m: 0.1, "
+                          "cut_m: 0.3}, range_m: 0.3}"}) {
+    for (const char* integrator : {"cordis", "leapfrog", "symplectic4", "implicit"}) {
+      SCOPED_TRACE(std::string(law) + integrator);
+      config::Problems problems;
+      Scene scene = load_scene_text(
+          std::string("cordis: 1\nspace: 2\nstep: {rate_hz: 2000, integrator: ") + integrator +
+              "}\nliaisons: {land: " + law +
+              "}\nmatter:\n"
+              "  floor: {kind: fixed, ball: {radius_m: 0.05}, at_m: [[0, 0], [0.08, 0]]}\n"
+              "  a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.05}, at_m: [0.03, 0.07]}\n"
+              "links: [{liaison: land, between_sets: [a, floor]}]\nsignals:\n"
+              "  of_a: {of: a, quantity: force, axis: y}\n"
+              "  a: {of: a, by: floor, quantity: contact_force, axis: y}\n",
+          "t", problems);
+      ASSERT_EQ(problems.text(), "");
+      WholeRun run(std::move(scene));
+      run.step(3);
+      auto values = run.values();
+      EXPECT_NE(values["a"], 0.0);
+      EXPECT_NEAR(values["a"], values["of_a"], 1e-12 * std::abs(values["of_a"]));
+    }
   }
 }
 
@@ -397,6 +445,17 @@ signals:
             "a number of pieces is one value");
   EXPECT_EQ(problem_of(2, head + "{of: a, quantity: speed}"),
             "a signal is of one MAT or one link, and 'a' has 2");
+  const std::string sets = R"(liaisons:
+  soft: {stiffness_n_per_m: 1, pulls: false, range: rest}
+  hard: {stiffness_n_per_m: 9, pulls: false, range: rest}
+matter: {a: {kind: mass, at_m: [[0, 0], [1, 0]], ball: {mass_kg: 1, radius_m: 0.1}}}
+links: [{liaison: soft, within: a}, {liaison: hard, within: a}]
+signals:
+  p: )";
+  EXPECT_EQ(problem_of(2, sets + "{of: [soft, hard], quantity: bonds}"),
+            "pairs of liaisons of one state are never bound");
+  EXPECT_EQ(problem_of(2, sets + "{of: [soft, hard], quantity: pieces, near_m: 0.1}"),
+            "pieces over several liaisons are counted by bound pairs alone");
 }
 
 TEST(SignalOfAWhole, IsReadWithoutAllocating) {

@@ -79,7 +79,9 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
     if (mat.kind != MatKind::kMass) continue;
     const double own_decay = network.medium_viscosity_on(mat) / mat.mass;
     if (mass > 0.0 && differ(decay, own_decay)) {
-      return IntegratorRefusal{"different masses in a medium", {}};
+      return IntegratorRefusal{mass == mat.mass ? "masses with different viscosities of the medium"
+                                                : "different masses in a medium",
+                               {}};
     }
     mass = mat.mass;
     decay = own_decay;

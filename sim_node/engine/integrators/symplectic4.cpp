@@ -93,7 +93,9 @@ void Symplectic4::add_forces(WorldState& world) noexcept {
   world.vector_springs.add_forces_at_full_step(world.kernel, at_rest);
   world.state_links.add_forces_before_start(world.state_machines, world.table, at_rest);
   world.bends.add_forces(at_rest);
-  world.sets.add_forces(world.pair_step(true), at_rest);
+  PairStep pairs = world.pair_step(true);
+  pairs.sums_contacts = true;  // those of the last stage stay
+  world.sets.add_forces(pairs, at_rest);
 }
 
 Energy Symplectic4::energy(WorldState& world) const noexcept {

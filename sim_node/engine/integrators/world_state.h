@@ -53,7 +53,7 @@ struct WorldState {
   void swap_table(StateTable& other, StateLinkArray& links_of_other);
 
   PairStep pair_step(bool frozen) noexcept {
-    return {table, state_machines, log, step_count, frozen};
+    return {table, state_machines, log, step_count, frozen, !frozen};
   }
   /// Adds the forces of all liaisons as they are at the start, without testing an exit.
   void add_frozen_forces(const ForceColumns& columns) noexcept;

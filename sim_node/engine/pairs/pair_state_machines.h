@@ -24,6 +24,7 @@ struct PairStep {
   EventLog& log;
   std::uint64_t step;  // step count
   bool frozen;         // before step 0: no exit is tested, nothing is remembered
+  bool sums_contacts;  // for the contact forces of this step
 };
 
 /// Rest length of a pair [m]: given, or the sum of two radii.

@@ -289,7 +289,7 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexce
   if (path_ == Path::kLennardJones) {
     block_.begin(rows.first);
     kernel_.lennard_jones_rows(lennard_jones_, members(), rows, block_.next_row(), force_.data());
-    if (!contacts_.empty() && !step.frozen) add_lennard_jones_contacts(rows);
+    if (!contacts_.empty() && step.sums_contacts) add_lennard_jones_contacts(rows);
     return;
   }
   for (std::size_t a = rows.first; a < rows.last;) {
@@ -424,7 +424,7 @@ void SetPairs::step_block(const PairStep& step) noexcept {
     contacts_.add(rows, block_.factor(), &friction);
     return;
   }
-  if (!step.frozen) contacts_.add(rows, block_.factor());
+  if (step.sums_contacts) contacts_.add(rows, block_.factor());
   kernel_.spread_rows(rows, block_.factor(), force_.data());
   if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
 }

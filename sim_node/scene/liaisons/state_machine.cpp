@@ -153,6 +153,7 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
     config::MappingReader exit_reader(exit, "exit of " + what, source.problems);
     state_machine.exits.push_back(read_exit(exit_reader, source, next_slot));
     places.exits.push_back(exit_reader.place_of("when"));
+    places.rests.push_back(exit_reader.place_of("rest"));
   }
   state.last_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   places.states.push_back({entry.key_place, reader.optional_truth("final", false)});
@@ -165,9 +166,12 @@ void check_slip(const engine::StateMachine& state_machine, const StateMachinePla
                 const std::string& liaison, Problems& problems) {
   if (rubs(state_machine)) return;
   for (std::size_t e = 0; e < state_machine.exits.size(); ++e) {
-    if (!asks_for(state_machine.exits[e].when, engine::Quantity::kSlid)) continue;
-    problems.error(places.exits[e],
-                   "a condition of " + liaison + " asks for 'slip_m', which has no friction",
+    const engine::Transition& exit = state_machine.exits[e];
+    const bool in_condition = asks_for(exit.when, engine::Quantity::kSlid);
+    if (!in_condition && !asks_for(exit.rest_length, engine::Quantity::kSlid)) continue;
+    problems.error(in_condition ? places.exits[e] : places.rests[e],
+                   (in_condition ? "a condition of " : "a rest length of ") + liaison +
+                       " asks for 'slip_m', which has no friction",
                    "give it 'friction', or ask for slip_m_per_s");
   }
 }

@@ -17,6 +17,7 @@ struct StateMachinePlaces {
   };
   std::vector<State> states;
   std::vector<config::Place> exits;  ///< of their conditions
+  std::vector<config::Place> rests;  ///< of what they do with the rest length
 };
 
 /// Reads the keys `friction`, `states` and `start`, or those of a single state, which then stand in the liaison

@@ -81,10 +81,12 @@ bool check_space(config::MappingReader& reader, const MatterKind& kind, int spac
 }
 
 /// How much the medium takes from each mass of an entry, where that is its own.
-void read_medium(config::MappingReader& reader, GeneratedMatter& matter) {
+/// @param is_led  its places are driven
+void read_medium(config::MappingReader& reader, bool is_led, GeneratedMatter& matter) {
   constexpr const char* kKey = "medium_viscosity_n_s_per_m";
-  const bool moves = std::ranges::any_of(
-      matter.mats, [](const auto& mat) { return mat.kind == engine::MatKind::kMass; });
+  const bool moves = !is_led && std::ranges::any_of(matter.mats, [](const auto& mat) {
+    return mat.kind == engine::MatKind::kMass;
+  });
   if (!moves && !reader.has(kKey)) return;
   const double viscosity = reader.optional_number(kKey, 0.0, Range::not_negative());
   if (!reader.has(kKey)) return;
@@ -141,8 +143,8 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   source.needs_no_mass = is_fixed || (reader.has("driven") && !pushes);
   GeneratedMatter matter = kind.read(source);
   if (is_fixed) std::ranges::for_each(matter.mats, fix);
-  if (matter.surfaces.empty()) read_medium(reader, matter);
   const bool is_led = spec && spec->kind != DriveSpec::Kind::kForce;
+  if (matter.surfaces.empty()) read_medium(reader, is_led, matter);
   if (takes_start(reader, kind)) {
     const StartSpec written = read_start(reader, space, kind.read == read_points, problems);
     if (reader.ok()) start(written, is_led, space, reader, matter);

@@ -202,14 +202,17 @@ class ConditionReader {
 
   /// What the reference is of: a name of the part where the link stands, or one of the scene.
   std::optional<Selection> pick() {
+    const std::string first = first_name();
+    const NameEntry* const in_scene_alone = assembly_.names.find(first);
+    const bool is_in_scene = in_scene_alone != nullptr && !in_scene_alone->is_of_liaison;
     if (!scope_.empty()) {
       Problems in_part;
       std::optional<Selection> picked;
       bool is_there = false;
       {
         const Names::Scope inside(assembly_.names, scope_.substr(0, scope_.size() - 1));
-        const std::string first = first_name();
         is_there = assembly_.names.find(first) != nullptr || assembly_.names.is_before_links(first);
+        is_there = is_there && !(is_in_scene && is_of_liaison(first));
         if (is_there) picked = select_from(in_part);
       }
       if (picked) return picked;
@@ -218,6 +221,14 @@ class ConditionReader {
     Problems in_scene;
     std::optional<Selection> picked = select_from(in_scene);
     return picked ? picked : refused(in_scene);
+  }
+
+  /// True if the present scope has this name only because its links have none.
+  bool is_of_liaison(const std::string& first) const {
+    const NameEntry* entry = assembly_.names.find(first);
+    const std::string& owner = reference_->owner;
+    if (entry == nullptr) entry = assembly_.names.find(owner.substr(0, owner.find('[')));
+    return entry != nullptr && entry->is_of_liaison;
   }
 
   std::string first_name() const {

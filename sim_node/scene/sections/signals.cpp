@@ -95,8 +95,10 @@ void read_contact(Assembly& assembly, config::MappingReader& reader, const Selec
                                              false, assembly.names, assembly.problems);
   if (!by) return;
   engine::NetworkDescription& network = assembly.scene.network;
+  std::vector<bool> is_on(network.mats.size());
+  for (const std::uint32_t mat : on.indices) is_on[mat] = true;
   for (const std::uint32_t mat : by->indices) {
-    if (std::ranges::find(on.indices, mat) == on.indices.end()) continue;
+    if (!is_on[mat]) continue;
     reader.error_at("by", "'" + assembly.names.word_of(mat, false) + "' is in both bodies");
     return;
   }
@@ -184,6 +186,12 @@ void read_signal_of_many(Assembly& assembly, config::MappingReader& reader, Sign
   signals.push_back(std::move(signal));
 }
 
+/// True if pairs of a liaison of sets may be bound: it has states.
+bool binds(const Assembly& assembly, std::uint32_t set) {
+  const std::uint32_t state_machine = assembly.scene.network.sets[set].state_machine;
+  return assembly.liaisons->pool().state_machines()[state_machine].states.size() > 1;
+}
+
 void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const std::string& name,
                         std::uint32_t set, std::vector<Signal>& signals) {
   const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
@@ -198,9 +206,7 @@ void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const
   const engine::SetLiaison& liaison = assembly.scene.network.sets[set];
   if (is_pieces && reader.has("near_m") && assembly.count_surfaces(liaison.set_p) > 0)
     reader.error_at("near_m", "surfaces are no pieces", "count bound pairs, without near_m");
-  const std::uint32_t state_machine = liaison.state_machine;
-  const bool binds = assembly.liaisons->pool().state_machines()[state_machine].states.size() > 1;
-  if (quantity != nullptr && !binds && !reader.has("near_m")) {
+  if (quantity != nullptr && !binds(assembly, set) && !reader.has("near_m")) {
     reader.error_at("quantity", "pairs of a liaison of one state are never bound",
                     "count pieces of balls nearer than near_m");
   }
@@ -269,6 +275,16 @@ void read_count_of_several(Assembly& assembly, config::MappingReader& reader,
   signal.sets = std::move(joined.sets);
   const QuantityWord* quantity = read_quantity(reader, Owner::kSet);
   if (quantity != nullptr) signal.quantity = quantity->quantity;
+  const auto is_bound = [&](std::uint32_t set) { return binds(assembly, set); };
+  if (reader.has("near_m")) {
+    reader.optional_value("near_m");
+    reader.error_at("near_m", "pieces over several liaisons are counted by bound pairs alone",
+                    "leave near_m out, or count the pieces of one liaison");
+  } else if (quantity != nullptr && signal.state_links.empty() &&
+             std::ranges::none_of(signal.sets, is_bound)) {
+    reader.error_at("quantity", "pairs of liaisons of one state are never bound",
+                    "count pieces of one of them, of balls nearer than near_m");
+  }
   read_rate(reader, signal);
   reader.finish();
   signals.push_back(std::move(signal));
