@@ -62,6 +62,8 @@ NetworkDescription undamped(NetworkDescription network) {
   }
   network.maxwell_links.clear();
   network.variables.clear();  // which the conditions asked for that are gone
+  network.contacts.clear();   // and what signals ask for
+  network.groups.clear();
   return network;
 }
 

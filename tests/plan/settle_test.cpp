@@ -88,6 +88,20 @@ TEST(Settle, LeavesOutWhatConditionsAskFor) {
   EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
 }
 
+TEST(Settle, LeavesOutWhatSignalsAskFor) {
+  NetworkDescription network = chain(2, false);
+  network.mats[1].position = Vec3(0, -kRest, 0);
+  network.maxwell_links.push_back({0, 1, 100.0, 1.0, 0.0});
+  network.groups.push_back({true, engine::LinkKind::kMaxwell, {0}});
+  network.groups.push_back({false, engine::LinkKind::kLinear, {0}});
+  network.groups.push_back({false, engine::LinkKind::kLinear, {1}});
+  network.contacts.push_back({1, 2});
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
+}
+
 TEST(Settle, HangsAChainBetweenTwoNailsAsAnElasticCatenary) {
   const NetworkDescription network = chain(21, true);
 
