@@ -239,6 +239,14 @@ void World::restore(const Snapshot& snapshot) {
   state_->restore(snapshot);
 }
 
+void World::end_external_forces() noexcept {
+  if (state_->freezing) {
+    for (std::size_t i = 0; i < state_->outside.held_count(); ++i)
+      set_external_force(state_->outside.held_mat(i), Vec3::Zero());
+  }
+  state_->outside.let_go();
+}
+
 std::size_t World::max_values_of_state() const noexcept {
   return state_->serialize(Archive::measuring()).size();
 }

@@ -146,6 +146,8 @@ class World {
   /// @throws std::invalid_argument when the snapshot is of another network, is cut short or too
   ///         long, or holds counts or state machines that do not fit. Then nothing has changed.
   void restore(const Snapshot& snapshot);
+  /// Ends the external forces of all masses; those of drives stay. Real time: O(such forces), no allocation.
+  void end_external_forces() noexcept;
 
  private:
   std::unique_ptr<WorldState> state_;

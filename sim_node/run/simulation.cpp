@@ -69,6 +69,7 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
   const auto ticks = division_.go_behind(scene_->start_state->step);
   CORDIS_ASSERT(ticks.has_value());
   world_.restore(*scene_->start_state);
+  world_.end_external_forces();  // the hands of that run are gone
   start_s_ = simulated_s();
   tick_count_ = ticks.value_or(0);
 }

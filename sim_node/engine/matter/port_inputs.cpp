@@ -71,6 +71,11 @@ void PortInputs::hold_force(std::uint32_t mat, const Vec3& force) noexcept {
   forces_[slot_[mat]].force = held;
 }
 
+void PortInputs::let_go() noexcept {
+  for (const HeldForce& held : forces_) slot_[held.mat] = kNoSlot;
+  forces_.clear();
+}
+
 Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
   CORDIS_ASSERT(mat < slot_.size());
   const bool is_held = slot_[mat] != kNoSlot && !is_port(mat);

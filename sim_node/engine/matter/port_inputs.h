@@ -50,6 +50,8 @@ class PortInputs {
 
   /// The masses that a force is held on.
   std::size_t held_count() const noexcept { return forces_.size(); }
+  /// Holds no forces any more. Real time: O(held forces), no allocation.
+  void let_go() noexcept;
   std::uint32_t held_mat(std::size_t index) const noexcept { return forces_[index].mat; }
   /// The port masses, in their order.
   const std::vector<std::uint32_t>& ports() const noexcept { return port_mats_; }
