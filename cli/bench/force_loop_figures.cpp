@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "cli/bench/temporary_folder.h"
 #include "cli/exit_code.h"
@@ -85,8 +86,8 @@ std::optional<double> number_in(const std::string& word) {
 std::string played(const fs::path& folder, const std::string& clock, double seconds,
                    std::string& reason) {
   constexpr std::chrono::seconds kLongest{60};
-  write_text_file(folder / "launch.yaml",
-                  "cordis: 1\nsession: bench\nclock: " + clock + "\n" + kNodes);
+  write_text_file(folder / "launch.yaml", "cordis: 1\nsession: bench_" + std::to_string(getpid()) +
+                                              "\nclock: " + clock + "\n" + kNodes);
   const std::string program = (program_directory() / "cordis").string();
   StopSignals signals;
   SessionWatcher watcher(kLongest);

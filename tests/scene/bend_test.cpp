@@ -97,6 +97,34 @@ matter:
   EXPECT_EQ(scene.bends[1].name, "reeds[1].steel");
 }
 
+/// Each copy looks for its own lines alone: those of 20,000 copies take no time of each other.
+TEST(Bends, GoAlongTheLinesOfEachOfManyCopies) {
+  const Scene scene = sound_scene(1, R"(parts:
+  reed:
+    matter:
+      post: {kind: fixed, at_m: 0}
+      tongue: {kind: string, count: 4, mass_kg: 0.01, stiffness_n_per_m: 0}
+      tip: {kind: mass, mass_kg: 1, at_m: 0}
+      net: {kind: grid, rows: 3, columns: 2, ball: {mass_kg: 0.001, radius_m: 0.001}, stiffness_n_per_m: 0, layout_spacing_m: 0.01}
+    links:
+      - {liaison: steel, along: tongue}
+      - {liaison: steel, along: "net[0..4]"}
+liaisons:
+  steel: {kind: bending, stiffness_n_m_per_rad: 1, length_m: 0.01}
+matter:
+  reeds: {part: reed, repeat: {count: 20000, translate_m: 0}}
+)");
+
+  ASSERT_EQ(scene.network.bends.size(), 3u * 20000);
+  for (std::uint32_t copy = 0; copy < 20000; ++copy) {
+    const std::uint32_t first = 12 * copy;
+    ASSERT_EQ(scene.network.bends[3 * copy].mat_a, first + 1) << copy;
+    ASSERT_EQ(scene.network.bends[3 * copy + 1].mat_a, first + 2) << copy;
+    ASSERT_EQ(scene.network.bends[3 * copy + 2].mat_a, first + 6) << copy;
+    ASSERT_EQ(scene.network.bends[3 * copy + 2].mat_b, first + 8) << copy;
+  }
+}
+
 TEST(Bends, OfARingWithTheAngleOfItsCornersAreAtRest) {
   const double corner = 2.0 * std::numbers::pi / 8.0;
   const Scene scene = sound_scene(
@@ -192,6 +220,21 @@ TEST(Bends, SayWhatIsWrongWithALink) {
     ASSERT_FALSE(problems.all().empty()) << bad.link;
     EXPECT_EQ(problems.in_order()[0].message, bad.message) << bad.link;
     EXPECT_EQ(problems.in_order()[0].place.line, 7) << bad.link;
+  }
+}
+
+/// A liaison with a mistake is not yet one of two ends.
+TEST(Bends, OfALiaisonWithAMistakeHaveNoOtherProblem) {
+  for (const char* const mistake : {"rest_rad: 120", "length_m: 0"}) {
+    config::Problems problems;
+    load_scene_text(
+        "cordis: 1\nname: t\nspace: 2\nstep: {rate_hz: 20000}\nliaisons:\n"
+        "  b: {kind: bending, stiffness_n_m_per_rad: 0.05, " +
+            std::string(mistake) +
+            "}\nmatter:\n  q: {kind: points, at_m: [[0, 0], [1, 0], [2, 0]], mass_kg: 1}\n"
+            "links:\n  - {liaison: b, between: [\"q[0]\", \"q[1]\", \"q[2]\"]}\n",
+        "t", problems);
+    EXPECT_EQ(problems.all().size(), 1u) << problems.text();
   }
 }
 

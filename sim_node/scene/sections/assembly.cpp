@@ -60,7 +60,7 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
                                 matter.surfaces.end());
   for (std::vector<std::uint32_t>& line : matter.lines) {
     for (std::uint32_t& mat : line) mat += mat_count();
-    lines.push_back(std::move(line));
+    lines.push_back({mat_count(), std::move(line)});
   }
   append(matter.links, mat_count());
   scene.radius_m.insert(scene.radius_m.end(), matter.drawn_radius_m.begin(),

@@ -43,6 +43,12 @@ inline std::uint32_t sum(const LinkCounts& counts) noexcept {
 /// Turns what a drive says as a part is turned.
 void set_turn(const Eigen::Matrix3d& turn, engine::Drive& drive);
 
+/// Neighbours in a row, of one matter.
+struct MatterLine {
+  std::uint32_t first_of_matter = 0;  ///< its first MAT
+  std::vector<std::uint32_t> mats;
+};
+
 /// What the sections of a scene file add to, in the order parts, liaisons, matter, ports, links,
 /// signals.
 struct Assembly {
@@ -95,7 +101,7 @@ struct Assembly {
   config::Problems& problems;
   std::shared_ptr<Liaisons> liaisons;
   Names names;
-  std::vector<std::vector<std::uint32_t>> lines;    ///< of MATs, along which matter may bend
+  std::vector<MatterLine> lines;  ///< along which matter may bend, in the order of their matter
   std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
   std::map<std::string, std::vector<std::uint32_t>>
       sets_of_liaisons;  ///< those without a name, by that of their liaison

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace cordis::scene {
@@ -57,18 +59,36 @@ std::vector<Triple> triples_between(Assembly& assembly, config::MappingReader& r
   return triples;
 }
 
+/// The lines of all matter that may have MATs between these: copies of a part do not look at each other.
+std::span<const MatterLine> lines_between(const Assembly& assembly, std::uint32_t first,
+                                          std::uint32_t last) {
+  const std::vector<MatterLine>& lines = assembly.lines;
+  const auto end = std::ranges::upper_bound(lines, last, {}, &MatterLine::first_of_matter);
+  auto begin =
+      std::ranges::upper_bound(lines.begin(), end, first, {}, &MatterLine::first_of_matter);
+  if (begin != lines.begin()) {
+    const std::uint32_t of_first = std::prev(begin)->first_of_matter;
+    begin =
+        std::ranges::lower_bound(lines.begin(), end, of_first, {}, &MatterLine::first_of_matter);
+  }
+  return {begin, end};
+}
+
 /// Each three neighbours of a line that are all picked.
 std::vector<Triple> triples_along(Assembly& assembly, config::MappingReader& reader) {
   const auto picked =
       select_mats(assembly, reader.required_value("along"), "'along' in a link", reader, "along");
   if (!picked) return {};
-  std::vector<bool> is_picked(assembly.mat_count());
-  for (const std::uint32_t mat : picked->indices) is_picked[mat] = true;
+  const auto [first, last] = std::ranges::minmax(picked->indices);
+  std::vector<bool> is_picked(last + 1 - first);
+  for (const std::uint32_t mat : picked->indices) is_picked[mat - first] = true;
+  const auto counts = [&, begin = first, end = last](std::uint32_t mat) {
+    return mat >= begin && mat <= end && is_picked[mat - begin];
+  };
   std::vector<Triple> triples;
-  for (const std::vector<std::uint32_t>& line : assembly.lines) {
+  for (const auto& [of_matter, line] : lines_between(assembly, first, last)) {
     for (std::size_t i = 0; i + 2 < line.size(); ++i) {
       const Triple triple{line[i], line[i + 1], line[i + 2]};
-      const auto counts = [&is_picked](std::uint32_t mat) { return is_picked[mat]; };
       if (std::ranges::all_of(triple, counts)) triples.push_back(triple);
     }
   }

@@ -84,7 +84,9 @@ void read_ends(Assembly& assembly, LinkEntry& entry) {
         select(end, "an end of a link", false, assembly.names, assembly.problems);
     if (picked) ends.push_back(*picked);
   }
-  if (between.exists() && between.items().size() != 2) {
+  // A liaison that has problems may be one of bending.
+  const bool may_bend = !entry.law && between.items().size() == 3;
+  if (between.exists() && between.items().size() != 2 && !may_bend) {
     entry.reader.error_at(
         "between", "a link is between 2 ends, got " + std::to_string(between.items().size()));
   }

@@ -91,8 +91,10 @@ bool are_joined(const engine::NetworkDescription& network, const std::vector<std
 /// Reads by which body the contact force is.
 void read_contact(Assembly& assembly, config::MappingReader& reader, const Selection& on,
                   Signal& signal) {
-  const std::optional<Selection> by = select(reader.required_value("by"), reader.name_of("by"),
-                                             false, assembly.names, assembly.problems);
+  const Value whose = reader.required_value("by");
+  if (!whose.exists()) return;
+  const std::optional<Selection> by =
+      select(whose, reader.name_of("by"), false, assembly.names, assembly.problems);
   if (!by) return;
   engine::NetworkDescription& network = assembly.scene.network;
   std::vector<bool> is_on(network.mats.size());
