@@ -242,8 +242,8 @@ std::vector<double> positions_with_skin(const NetworkDescription& scene, double 
   if (skin >= 0.0) set.neighbours().hold_skin(skin);
   for (std::uint64_t n = 0; n < 2000; ++n) {
     mats.clear_forces();
-    static_cast<void>(
-        set.add_forces({table, engine::state_kernel(width), log, n, false}, mats.force_columns()));
+    static_cast<void>(set.add_forces({table, engine::state_kernel(width), log, n, false, true},
+                                     mats.force_columns()));
     static_cast<void>(mats.advance(engine::step_kernel(width)));
   }
   std::vector<double> positions;
