@@ -11,7 +11,7 @@ namespace cordis::test {
 namespace {
 
 constexpr std::uint32_t kPushing = 1;  // states of the quill
-constexpr std::uint32_t kPassed = 2;
+constexpr std::uint32_t kPlectrumPassed = 2;
 constexpr double kQuillStiffness = 800.0;
 constexpr double kRelease = 0.003;
 
@@ -66,7 +66,7 @@ TEST(PluckedByPlectrum, LetsGoAtTheForceOfTheQuillOnceAStroke) {
   std::size_t released = 0;
   session.play_until(15.0, [&] {
     for (const engine::LinkEvent& event : session.events()) {
-      if (event.from != kPushing || event.to != kPassed) continue;
+      if (event.from != kPushing || event.to != kPlectrumPassed) continue;
       ++released;
       EXPECT_GE(-event.value, kRelease);
       EXPECT_LT(-event.value, 1.01 * kRelease);  // the way of one step beyond
