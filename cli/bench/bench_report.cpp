@@ -67,6 +67,7 @@ json json_of(const EngineFigures& engine) {
   }
   return {{"vector_width", engine.vector_width},
           {"addition_s", engine.addition_s},
+          {"addition_at_end_s", engine.addition_at_end_s},
           {"by_dimension", by_dimension},
           {"by_size", by_size},
           {"ball_s", engine.ball_s},

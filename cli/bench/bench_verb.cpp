@@ -10,6 +10,7 @@
 #include "cli/bench/bench_report.h"
 #include "cli/exit_code.h"
 #include "cli/progress_line.h"
+#include "cli/run/gnuplot.h"
 #include "cli/table/output_file.h"
 
 namespace cordis::cli {
@@ -25,6 +26,8 @@ int run(const BenchWords& words) {
   // Files that cannot be written are known before anything is measured.
   std::optional<OutputFile> json_file;
   if (!words.json_file.empty()) json_file.emplace(words.json_file);
+  if (!words.chart_file.empty() && !has_gnuplot())
+    throw UsageError("--chart needs gnuplot, which is not installed");
   std::optional<OutputFile> chart_file;
   if (!words.chart_file.empty()) chart_file.emplace(words.chart_file);
   const auto begin = std::chrono::steady_clock::now();

@@ -9,6 +9,9 @@ namespace cordis::cli {
 /// Text for gnuplot as it stands: between single quotes nothing but these means anything.
 std::string gnuplot_quoted(const std::string& text);
 
+/// @return true where gnuplot is installed
+bool has_gnuplot();
+
 /// Runs a script in its folder. @return whether gnuplot is there and is content
 bool run_gnuplot(const std::filesystem::path& script);
 

@@ -11,6 +11,13 @@ using engine::Vec3;
 using plan::LoadBound;
 using plan::PortLoad;
 
+/// @return true if the damper of this edge is always there, and its outer end does not move along
+bool brakes_for_certain(const plan::LiaisonGraph& graph, const plan::Edge& edge,
+                        std::uint32_t outer) {
+  return edge.bounded && edge.liaison.kind == engine::LiaisonKind::kLink &&
+         graph.inverse_mass[outer] == 0.0;
+}
+
 /// What brakes each mass of a body from outside [N s/m], in their order.
 std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const scene::Port& port,
                                       LoadBound bound) {
@@ -19,9 +26,12 @@ std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const sce
   for (const scene::BodyMass& mass : port.body) is_inside[mass.mat] = true;
   for (const plan::Edge& edge : graph.edges) {
     if (is_inside[edge.mat_a] == is_inside[edge.mat_b]) continue;
-    if (bound == LoadBound::kMin && !edge.bounded) continue;
     if (edge.liaison.kind == engine::LiaisonKind::kBend) continue;  // its edges bound it from above
-    of_mat[is_inside[edge.mat_a] ? edge.mat_a : edge.mat_b] += edge.viscosity;
+    const bool is_a = is_inside[edge.mat_a];
+    if (bound == LoadBound::kMin &&
+        !brakes_for_certain(graph, edge, is_a ? edge.mat_b : edge.mat_a))
+      continue;
+    of_mat[is_a ? edge.mat_a : edge.mat_b] += edge.viscosity;
   }
   std::vector<double> viscosities;  // contacts may end
   for (const scene::BodyMass& mass : port.body) viscosities.push_back(of_mat[mass.mat]);

@@ -112,21 +112,23 @@ void AnswerDelays::record(std::uint64_t epoch, const Report& report,
   const bool is_new = is_first || before.answered_sample != report.answered_sample;
   const double period_s = 1.0 / process.rate_hz.load();
   const bool follows = !is_first && report.sample > before.sample;
-  const std::uint64_t lost = follows ? std::min(report.sample - before.sample - 1, kMaxLost) : 0;
-  process.waited_s = is_new ? 0.0 : process.waited_s + static_cast<double>(lost + 1) * period_s;
+  const std::uint64_t lost = follows ? report.sample - before.sample - 1 : 0;
+  process.waited_s = is_new ? 0.0 : process.waited_s + (static_cast<double>(lost) + 1.0) * period_s;
   if (!(report.delay_s > 0.0 && report.delay_s <= AnswerDelayHistogram::kLongest)) return;
   const double delay_s = std::max(report.delay_s, min_delay_s(process, report.answered_sample));
   process.before.delay_s = delay_s;
   const double given_up_s = std::max(kGivenUp, kGivenUpPeriods * period_s);
-  // At each lost sample the position that is felt was a period younger than at the next.
+  if (process.waited_s <= given_up_s) process.delays.record(delay_s + process.waited_s);
+  // At each lost sample the position that is felt was a period younger than at the next. Of them count
+  // those before the force of the answer before was given up.
   const double min_s = std::max(std::min(delay_s, before.delay_s), kFastestAnswer);
-  for (std::uint64_t i = 0; i <= lost; ++i) {
-    const double ago_s = static_cast<double>(i) * period_s;
-    const double then_s = delay_s + process.waited_s - ago_s;
-    // Since when the force of the answer before was on the motors, at a lost sample.
-    const double held_s = !is_new ? process.waited_s - ago_s : i == 0 ? 0.0 : then_s - min_s;
-    if (held_s > given_up_s) continue;
-    process.delays.record(i == 0 ? then_s : std::max(then_s, min_s));
+  const double held_s = is_new ? delay_s - min_s : process.waited_s;
+  const double off = std::ceil((held_s - given_up_s) / period_s);  // samples at which it was off
+  const double first = std::max(1.0, off);
+  for (std::uint64_t n = 0; n < kMaxLost; ++n) {
+    const double ago = first + static_cast<double>(n);
+    if (ago > static_cast<double>(lost)) break;
+    process.delays.record(std::max(delay_s + process.waited_s - ago * period_s, min_s));
   }
 }
 

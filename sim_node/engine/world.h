@@ -73,7 +73,7 @@ class World {
   /// a freeze_tolerance that of a fixed point is whole only if it stands in kept_awake.
   Vec3 link_force(std::uint32_t mat) const noexcept;
   /// Force [N] that the liaisons of sets have put in the last step on the first group of a contact of
-  /// groups by the second one; 0 before the first. Real time: O(sets). Precondition: it exists.
+  /// groups by the second one; before the first 0, or with `symplectic4` that of the start. Real time: O(sets). Precondition: it exists.
   Vec3 contact_force(std::uint32_t contact) const noexcept;
   const Columns& positions() const noexcept;  ///< x(n) [m], 4 x N; to be asked for in each step
 

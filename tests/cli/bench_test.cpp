@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 
 #include "cli/bench/bench_networks.h"
 #include "cli/bench/bench_report.h"
+#include "cli/bench/bench_verb.h"
 #include "cli/bench/plain_loop.h"
 #include "cli/bench/turns.h"
 #include "cli/run/status_board.h"
@@ -152,6 +154,18 @@ TEST(Bench, TheReportHasItsFigures) {
   EXPECT_EQ(json["engine"]["largest_at_1_khz"][0]["count"], 123456);
   EXPECT_DOUBLE_EQ(json["force_loop"]["p50_s"], 90e-6);
   EXPECT_EQ(json["machine"]["processor"], "a processor's name");
+  CommandLine line("cordis", "", "1.2.3");
+  add_bench_verb(line);
+  const std::string help = line.reference();
+  const std::function<void(const nlohmann::json&)> look = [&](const nlohmann::json& part) {
+    for (const auto& [key, value] : part.items()) {
+      if (part.is_object()) {
+        EXPECT_NE(help.find(key), std::string::npos) << key;
+      }
+      if (value.is_structured()) look(value);
+    }
+  };
+  look(json);
 }
 
 TEST(Bench, WarnsOfAMachineThatWasNotQuiet) {
