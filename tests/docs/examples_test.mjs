@@ -348,6 +348,16 @@ test('cordis doctor', async () => {
   }
 });
 
+test('cordis bench', async () => {
+  for (const [line, origin] of ofVerb('bench')) {
+    const quick = line.includes('--quick') ? line : `${line} --quick`;
+    assert.match(await runs(quick, origin), /exchanges\/s/, origin);
+    for (const [, file] of line.matchAll(/--(?:json|chart) (\S+)/g)) {
+      assert.ok(readFileSync(join(folder, file)).length > 0, `${origin}: ${file}`);
+    }
+  }
+});
+
 test('cordis test lists what it would run', async () => {
   for (const [line, origin] of ofVerb('test')) {
     assert.match(await runs(`${line} -N`, origin), /Total Tests: [1-9]/, `${origin}: ${line}`);
@@ -356,7 +366,7 @@ test('cordis test lists what it would run', async () => {
 
 test('no verb has examples that nothing runs', () => {
   const RUN = [
-    'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
+    'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'bench', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
     'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot', 'new', 'schema',
   ];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
