@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "sim_node/engine/core/require.h"
 #include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::cli {

@@ -12,7 +12,7 @@ std::string gnuplot_quoted(const std::string& text);
 /// @return true where gnuplot is installed
 bool has_gnuplot();
 
-/// Runs a script in its folder. @return whether gnuplot is there and is content
+/// Runs a script in its folder. @return true when gnuplot is installed and reports no error
 bool run_gnuplot(const std::filesystem::path& script);
 
 }  // namespace cordis::cli

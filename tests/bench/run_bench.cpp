@@ -4,40 +4,18 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cli/bench/bench_networks.h"
 #include "cli/bench/plain_loop.h"
 #include "sim_node/engine/world.h"
 
 namespace {
 
 using cordis::cli::PlainLoop;
-using cordis::engine::Mat;
+using cordis::cli::square_net;
 using cordis::engine::Network;
 using cordis::engine::NetworkDescription;
-using cordis::engine::Vec3;
 using cordis::engine::VectorWidth;
 using cordis::engine::World;
-
-/// side x side masses; their links along the rows, then along the columns.
-NetworkDescription generated_grid(int dimension, std::uint32_t side) {
-  NetworkDescription network;
-  network.dimension = dimension;
-  network.step = 1e-3;
-  for (std::uint32_t i = 0; i < side * side; ++i) {
-    Mat mat;
-    mat.mass = 0.01;
-    mat.position = dimension == 1 ? Vec3(0.001 * (i / side * (i % side) % 7), 0.0, 0.0)
-                                  : Vec3(0.01 * (i % side), 0.01 * (i / side), 0.0);
-    network.mats.push_back(mat);
-  }
-  const double rest = dimension == 1 ? 0.0 : 0.0099;
-  for (std::uint32_t i = 0; i < side * side; ++i) {
-    if (i % side + 1 < side) network.links.push_back({i, i + 1, 100.0, 0.01, rest});
-  }
-  for (std::uint32_t i = 0; i + side < side * side; ++i) {
-    network.links.push_back({i, i + side, 100.0, 0.01, rest});
-  }
-  return network;
-}
 
 template <class Loop>
 void step(benchmark::State& state, Loop& loop, std::size_t link_count) {
@@ -53,14 +31,14 @@ void step(benchmark::State& state, Loop& loop, std::size_t link_count) {
 
 void step_of_a_generated_grid(benchmark::State& state) {
   const NetworkDescription network =
-      generated_grid(static_cast<int>(state.range(0)), static_cast<std::uint32_t>(state.range(1)));
+      square_net(static_cast<int>(state.range(0)), static_cast<std::uint32_t>(state.range(1)));
   World world(std::make_shared<const Network>(network));
   step(state, world, network.links.size());
 }
 
 void plain_loop_over_a_generated_grid(benchmark::State& state) {
   const NetworkDescription network =
-      generated_grid(static_cast<int>(state.range(0)), static_cast<std::uint32_t>(state.range(1)));
+      square_net(static_cast<int>(state.range(0)), static_cast<std::uint32_t>(state.range(1)));
   PlainLoop loop(network);
   step(state, loop, network.links.size());
 }
@@ -68,7 +46,7 @@ void plain_loop_over_a_generated_grid(benchmark::State& state) {
 void runs_by_width(benchmark::State& state) {
   const auto width = static_cast<VectorWidth>(state.range(0));
   state.SetLabel(cordis::engine::to_string(width));
-  const NetworkDescription network = generated_grid(3, 100);
+  const NetworkDescription network = square_net(3, 100);
   World world(std::make_shared<const Network>(network), width);
   step(state, world, network.links.size());
 }
