@@ -13,7 +13,7 @@
 #include "cli/bench/temporary_folder.h"
 #include "cli/exit_code.h"
 #include "cli/programs.h"
-#include "cli/run/supervisor.h"
+#include "cli/run/output_watcher.h"
 #include "cli/text_file.h"
 
 namespace cordis::cli {
@@ -51,31 +51,6 @@ const char* const kNodes = R"(nodes:
   key: {node: device_node, device: key.yaml}
 )";
 
-/// Keeps what a session prints, and ends it when it takes too long.
-class SessionWatcher : public Watcher {
- public:
-  explicit SessionWatcher(std::chrono::seconds longest)
-      : deadline_(std::chrono::steady_clock::now() + longest) {}
-
-  void line(std::size_t /*process*/, Stream /*stream*/, std::string_view text) override {
-    (output_ += text) += '\n';
-  }
-  bool ended(std::size_t /*process*/, const Ending& /*ending*/, bool /*stopping*/) override {
-    return false;
-  }
-  void killed(std::size_t /*process*/) override {}
-  void interrupted(bool /*again*/) override { interrupted_ = true; }
-  bool tick() override { return std::chrono::steady_clock::now() > deadline_; }
-
-  const std::string& output() const noexcept { return output_; }
-  bool is_interrupted() const noexcept { return interrupted_; }
-
- private:
-  std::chrono::steady_clock::time_point deadline_;
-  std::string output_;
-  bool interrupted_ = false;
-};
-
 std::optional<double> number_in(const std::string& word) {
   char* end = nullptr;
   const double value = std::strtod(word.c_str(), &end);
@@ -90,7 +65,7 @@ std::string played(const fs::path& folder, const std::string& clock, double seco
                                               "\nclock: " + clock + "\n" + kNodes);
   const std::string program = (program_directory() / "cordis").string();
   StopSignals signals;
-  SessionWatcher watcher(kLongest);
+  OutputWatcher watcher(1, kLongest);
   const std::vector<Ending> endings =
       supervise({{{program, "run", (folder / "launch.yaml").string(), "--duration",
                    fmt::format("{:g}s", seconds), "--no-color"}}},
@@ -99,8 +74,8 @@ std::string played(const fs::path& folder, const std::string& clock, double seco
     reason = "interrupted";
     return {};
   }
-  if (endings.front().exit_code() == kSuccess) return watcher.output();
-  reason = endings.front().text() + "\n" + watcher.output();
+  if (endings.front().exit_code() == kSuccess) return watcher.output(0);
+  reason = endings.front().text() + "\n" + watcher.output(0);
   return {};
 }
 

@@ -25,11 +25,13 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
 
   const plan::StepBound& bound = stability.certified;
   const scene::Called liaison = scene::call_liaison(scene, bound.liaison);
+  const scene::Called mass = scene::call_mat(scene, bound.mat);
+  // The viscosity of the medium has no place of its own.
+  const config::Place& place = bound.liaison ? liaison.place : mass.place;
   const long rate = std::lround(scene.step_rate_hz);
   const double per_tick = scene.gesture_rate_hz;
   const double stable_rate = (std::floor(1.0 / (bound.step * per_tick)) + 1.0) * per_tick;
-  const std::string limit =
-      liaison.name + " at the mass " + scene::call_mat(scene, bound.mat).name + " sets the limit";
+  const std::string limit = liaison.name + " at the mass " + mass.name + " sets the limit";
   const std::string hint =
       "a rate_hz of " + std::to_string(std::lround(stable_rate)) + " is stable in all of them";
   if (!stability.diverges() && stability.uncertainty) {
@@ -40,16 +42,15 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
                          ": " + stability.uncertainty->why,
                      "energy and K' + 2 Z' are watched during the run");
   } else if (!stability.diverges()) {
-    problems.warning(liaison.place,
+    problems.warning(place,
                      "at " + std::to_string(rate) +
                          " Hz the scene may be unstable in some poses or states: " + limit,
                      hint);
   } else if (force) {
-    problems.warning(liaison.place,
-                     "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit, hint);
+    problems.warning(place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
+                     hint);
   } else {
-    problems.error(liaison.place,
-                   "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
+    problems.error(place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
                    hint + "; or run it all the same with force=true of its sim_node");
   }
 }

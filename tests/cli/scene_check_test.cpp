@@ -97,6 +97,17 @@ TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
   EXPECT_NE(error_.find("warning: at 40 Hz the scene is unstable"), std::string::npos) << error_;
 }
 
+TEST_F(Checked, AnUnstableMediumIsRefusedAtTheMassThatItDampsTooMuch) {
+  std::ofstream(path_) << "cordis: 1\nname: medium\nspace: 1\nstep: {rate_hz: 1000}\n"
+                          "world: {viscosity_n_s_per_m: 900}\n"
+                          "matter:\n  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}\n";
+  EXPECT_EQ(run({}), kBadInput);
+  EXPECT_NE(error_.find(path_ + ":7:"), std::string::npos) << error_;
+  EXPECT_NE(error_.find("the viscosity of the medium at the mass bob sets the limit"),
+            std::string::npos)
+      << error_;
+}
+
 TEST_F(Checked, ASceneMayAskForAccuracyInsteadOfARate) {
   write("1000");
   std::ifstream in(path_);
