@@ -207,6 +207,46 @@ TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
   }
 }
 
+/// Types that a header defines outside every other type, with the namespaces that they are in.
+std::vector<std::string> types_defined_in(const fs::path& header) {
+  static const std::regex kBegin(R"(^(?:inline )?namespace ([\w:]+) \{)");
+  static const std::regex kEnd(R"(^\}\s*// namespace)");
+  static const std::regex kType(
+      R"(^(?:class|struct|union|enum|enum class) (?:alignas\(.*\) )?(\w+)(?: final)?(?: :[^:].*)?\s*\{)");
+  std::vector<std::string> types;
+  std::vector<std::string> namespaces;
+  std::ifstream file(header);
+  for (std::string text; std::getline(file, text);) {
+    std::smatch match;
+    if (std::regex_search(text, match, kBegin)) {
+      namespaces.push_back(match[1]);
+    } else if (std::regex_search(text, kEnd) && !namespaces.empty()) {
+      namespaces.pop_back();
+    } else if (std::regex_search(text, match, kType)) {
+      std::string name;
+      for (const std::string& part : namespaces) name += part + "::";
+      types.push_back(name + match[1].str());
+    }
+  }
+  return types;
+}
+
+// Two types of one name in a program share their destructor: the linker keeps either.
+TEST(Layering, NoTwoHeadersDefineATypeOfOneName) {
+  std::map<std::string, std::string> homes;
+  for (const std::string& folder : kFolders) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() != ".h") continue;
+      const std::string file = fs::relative(entry.path(), kRoot).string();
+      for (const std::string& type : types_defined_in(entry.path())) {
+        const auto [known, is_new] = homes.emplace(type, file);
+        EXPECT_TRUE(is_new) << type << " is defined in " << known->second << " and in " << file;
+      }
+    }
+  }
+  EXPECT_GT(homes.size(), 400u) << "the headers are read";
+}
+
 TEST(Layering, HeadersOfAForeignLibraryStandInOnePlace) {
   const std::map<std::string, std::vector<std::string>> homes = {
       {"fastdds/", {"node/dds/"}},

@@ -35,7 +35,7 @@ int run(const BenchWords& words) {
   if (words.quick) effort = {.rounds = 3, .largest_side = 200};
   ProgressLine progress;
   const auto show = [&progress](const std::string& what) { progress.show("measuring " + what); };
-  const MachineWatch machine;
+  const MachineMeasurement machine;
   BenchReport report;
   report.version = CORDIS_VERSION;
   report.engine = measure_engine(effort, show);

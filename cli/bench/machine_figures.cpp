@@ -41,14 +41,14 @@ std::string MachineFigures::disturbances() const {
   return text;
 }
 
-MachineWatch::MachineWatch(machine::SystemFiles files)
+MachineMeasurement::MachineMeasurement(machine::SystemFiles files)
     : files_(std::move(files)), at_begin_(machine::read_processor_time(files_)) {
   begun_.cores = std::thread::hardware_concurrency();
   begun_.processor = processor_name(files_);
   read_clocks(files_, begun_);
 }
 
-MachineFigures MachineWatch::end() const {
+MachineFigures MachineMeasurement::end() const {
   MachineFigures figures = begun_;
   read_clocks(files_, figures);
   figures.stolen_share = machine::stolen_share(at_begin_, machine::read_processor_time(files_));

@@ -23,9 +23,9 @@ struct MachineFigures {
 };
 
 /// Looks at the machine at its construction and at end().
-class MachineWatch {
+class MachineMeasurement {
  public:
-  explicit MachineWatch(machine::SystemFiles files = machine::SystemFiles());
+  explicit MachineMeasurement(machine::SystemFiles files = machine::SystemFiles());
 
   MachineFigures end() const;
 

@@ -67,7 +67,7 @@ int plot(const PlotWords& words) {
   const std::vector<std::size_t> numbers = signals_of(description, words.signals);
   const double start_s = start_of(words.source, *source);
   const double end_s = start_s + duration_of(words.duration, *source, start_s);
-  SignalRows rows;
+  SignalSeries rows;
   ProgressLine progress;
   source->read_signals(start_s, end_s, rows, [&](double time_s) {
     progress.show(fmt::format("{:.2f} s of {:.6g} s", time_s, end_s));

@@ -80,7 +80,7 @@ std::optional<msg::SceneFrame> LiveSource::frame_at(double time_s) {
   return picker_.at(time_s, period_s, [this](msg::SceneFrame& frame) { return next(frame); });
 }
 
-void LiveSource::read_signals(double from_s, double to_s, SignalRows& rows,
+void LiveSource::read_signals(double from_s, double to_s, SignalSeries& rows,
                               const std::function<bool(double)>& progress) {
   msg::SceneSignals batch;
   const std::size_t columns = description_.signals().size();

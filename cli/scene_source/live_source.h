@@ -27,7 +27,7 @@ class LiveSource final : public SceneSource {
   double first_s() override { return first_s_; }
   double duration_s() override { return 0.0; }
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
-  void read_signals(double from_s, double to_s, SignalRows& rows,
+  void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;
   std::vector<std::string> notes() const override { return notes_; }
 

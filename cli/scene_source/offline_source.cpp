@@ -14,7 +14,7 @@ std::optional<msg::SceneFrame> OfflineSource::frame_at(double time_s) {
   return session_.frame();
 }
 
-void OfflineSource::read_signals(double from_s, double to_s, SignalRows& rows,
+void OfflineSource::read_signals(double from_s, double to_s, SignalSeries& rows,
                                  const std::function<bool(double)>& progress) {
   while (!session_.has_reached(to_s - first_s()) && !progress(session_.time_s())) {
     if (!session_.play_tick()) {

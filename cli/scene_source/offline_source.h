@@ -19,7 +19,7 @@ class OfflineSource final : public SceneSource {
   double first_s() override { return session_.start_s(); }
   double duration_s() override { return session_.duration_s(); }
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
-  void read_signals(double from_s, double to_s, SignalRows& rows,
+  void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;
   std::vector<std::string> notes() const override { return session_.warnings(); }
   std::string failure() const override { return failure_; }

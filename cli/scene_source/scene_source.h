@@ -14,7 +14,7 @@
 namespace cordis::cli {
 
 /// Rows of signals: the time of each, and its values one behind the other.
-struct SignalRows {
+struct SignalSeries {
   std::vector<double> time_s;
   std::vector<double> value;
 };
@@ -35,7 +35,7 @@ class SceneSource {
   virtual std::optional<msg::SceneFrame> frame_at(double time_s) = 0;
   /// Adds all rows of signals from one time to another. @param progress  gets the time reached, and
   /// returns true to stop
-  virtual void read_signals(double from_s, double to_s, SignalRows& rows,
+  virtual void read_signals(double from_s, double to_s, SignalSeries& rows,
                             const std::function<bool(double)>& progress) = 0;
 
   /// What is worth a word on stderr at the end.

@@ -52,7 +52,7 @@ std::optional<msg::SceneFrame> TakeSource::frame_at(double time_s) {
   return picker_.at(time_s, period_s, [this](msg::SceneFrame& frame) { return next(frame); });
 }
 
-void TakeSource::read_signals(double from_s, double to_s, SignalRows& rows,
+void TakeSource::read_signals(double from_s, double to_s, SignalSeries& rows,
                               const std::function<bool(double)>& progress) {
   SignalRowSource source(*take_, scene_, msg::RATE_GESTURE, loss_);
   const std::size_t columns = source.columns().size();

@@ -24,7 +24,7 @@ class TakeSource final : public SceneSource {
   double first_s() override { return first_s_; }
   double duration_s() override { return last_s_ - first_s_; }
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
-  void read_signals(double from_s, double to_s, SignalRows& rows,
+  void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;
   std::vector<std::string> notes() const override;
 
