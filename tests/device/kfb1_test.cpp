@@ -458,10 +458,18 @@ TEST_F(Kfb1Test, PullsToPlacesWithinTheLimitsOfItsFileAndLetsGoOfOldOnes) {
   const auto key = driver("kfb1", port(), layout);
   key->start(Role::kLiaison);
   double before = 0.0;
+  auto before_read = std::chrono::steady_clock::now();
   const auto motor_force = [&] {  // of the motor, in this period
     AxisValues force{};
+    const auto begin = std::chrono::steady_clock::now();
     static_cast<void>(key->read(force));
-    EXPECT_LE(std::abs(force[0] - before), 0.4 + 1e-9) << "400 N/s in a millisecond";
+    const std::chrono::duration<double> past = std::chrono::steady_clock::now() - before_read;
+    before_read = begin;
+    // A board that the machine kept from its forces for 20 ms lets go at once.
+    const bool lets_go = force[0] == 0.0;
+    EXPECT_TRUE(lets_go ||
+                std::abs(force[0] - before) <= 400.0 * std::max(1e-3, past.count()) + 1e-9)
+        << "from " << before << " to " << force[0] << " N: 400 N/s, after " << past.count() << " s";
     EXPECT_LE(std::abs(force[0]), 4.0);
     before = force[0];
     return -force[0];

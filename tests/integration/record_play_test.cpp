@@ -169,7 +169,8 @@ TEST(RecordPlay, ARecorderThatJoinsInMidSessionHasWhatASessionKeepsForIt) {
   ASSERT_TRUE(session.wait_for_output("in DDS domain", kPatience));
   const auto record = [&](const std::string& name) {
     return std::make_unique<ChildProcess>(std::vector<std::string>{
-        kCordis, "record", "plucked_string", "-o", (folder / name).string()});
+        kCordis, "record", "plucked_string", "--domain", std::to_string(test::own_domain()), "-o",
+        (folder / name).string()});
   };
   const auto wait_for_bytes = [&](const std::string& name, std::uintmax_t bytes) {
     return eventually([&] {
