@@ -23,7 +23,8 @@ enum class KeyKind {
   kIntegers,  ///< a whole number, or a sequence of them
   kMapping,
   kSequence,
-  kFormula  ///< a number, or a text that is a formula
+  kFormula,  ///< a number, or a text that is a formula
+  kColour    ///< a name of CSS, or #rrggbb
 };
 
 /// One question of a reader for one key. What does not belong to its kind is empty.

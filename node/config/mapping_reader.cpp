@@ -187,6 +187,22 @@ std::string MappingReader::optional_choice(const std::string& key, std::string f
   return value.exists() ? choice_of(value, key, std::move(fallback), choices) : fallback;
 }
 
+std::optional<Colour> MappingReader::optional_colour(const std::string& key) {
+  log_request(value_, key, KeyKind::kColour, false);
+  const Value value = take(key);
+  if (!value.exists()) return std::nullopt;
+  const bool is_word = value.kind() == Value::Kind::kScalar;
+  const std::optional<Colour> colour = is_word ? colour_of(value.text()) : std::nullopt;
+  if (colour) return colour;
+  const bool is_comment = value.kind() == Value::Kind::kNothing;
+  report(value.place(),
+         name_of(key) + " must be a colour: a name of CSS as red, or '#rrggbb', got " +
+             value.described(),
+         is_comment ? "# begins a comment of YAML: write it in quotes, as '#ff8800'"
+                    : did_you_mean(is_word ? value.text() : "", colour_names()));
+  return std::nullopt;
+}
+
 std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length) {
   log_request(value_, key, KeyKind::kNumbers, true, [&](KeyRequest& r) { r.length = length; });
   const Value value = take_required(key);

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "node/config/colour.h"
 #include "node/config/number.h"
 #include "node/config/value.h"
 
@@ -39,6 +41,9 @@ class MappingReader {
   std::string required_choice(const std::string& key, const std::vector<std::string>& choices);
   std::string optional_choice(const std::string& key, std::string fallback,
                               const std::vector<std::string>& choices);
+
+  /// A name of CSS or '#rrggbb'.
+  std::optional<Colour> optional_colour(const std::string& key);
 
   /// A sequence of finite numbers; a single number stands for a sequence of one. `length` 0 = any
   /// length but none.

@@ -1,6 +1,7 @@
 // node/dds/payload.cpp
 #include "node/dds/payload.h"
 
+#include <array>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -28,9 +29,9 @@ std::size_t missing_bytes(typename TypeOf<Message>::Type& type, Message& message
   return is_older ? sizeof(double) : 0;
 }
 
-/// The last wire versions whose SceneDescription ends without `port_frames`, without `surfaces`.
-constexpr std::uint32_t kLastWithoutPortFrames = 3;
-constexpr std::uint32_t kLastWithoutSurfaces = 4;
+/// The last wire versions whose SceneDescription ends without `colours`, `surfaces`, `port_frames`:
+/// each lacks what stands before it in this list as well.
+constexpr std::array<std::uint32_t, 3> kLastWithout{5, 4, 3};
 
 constexpr std::size_t kCount = 4;  // bytes of the count of a sequence
 
@@ -62,11 +63,12 @@ bool decode(std::span<const std::byte> payload, Message& message) noexcept {
     const std::size_t missing = missing_bytes(type, message, payload.size());
     if (decode_padded(type, payload, missing, message)) return true;
     if constexpr (std::is_same_v<Message, msg::SceneDescription>) {
-      const std::size_t missing_surfaces = empty_sequence_bytes(payload.size());
-      if (decode_padded(type, payload, missing_surfaces, message))
-        return message.wire_version() <= kLastWithoutSurfaces;
-      return decode_padded(type, payload, missing_surfaces + kCount, message) &&
-             message.wire_version() <= kLastWithoutPortFrames;
+      std::size_t missing_sequences = empty_sequence_bytes(payload.size());
+      for (const std::uint32_t last_version : kLastWithout) {
+        if (decode_padded(type, payload, missing_sequences, message))
+          return message.wire_version() <= last_version;
+        missing_sequences += kCount;
+      }
     }
     return false;
   } catch (...) {  // lengths of sequences are as hostile as any other number

@@ -168,6 +168,15 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
     description.ports().push_back(port_of(port));
     description.port_frames().push_back(frame_of(scene, port, layout));
   }
+  for (const scene::ColouredRange& range : scene.colours) {
+    msg::ColouredRange message;
+    message.first(range.first);
+    message.count(range.count);
+    message.red(range.colour.red);
+    message.green(range.colour.green);
+    message.blue(range.colour.blue);
+    description.colours().push_back(message);
+  }
   for (const engine::Surface& surface : scene.network.surfaces) {
     description.surfaces().push_back(surface_of(scene, surface, layout));
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "node/config/colour.h"
 #include "node/config/problem.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
@@ -22,6 +23,13 @@ struct NamedRange {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   config::Place place{};  ///< where it is described
+};
+
+/// Consecutive MATs to which the scene gives a colour.
+struct ColouredRange {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  config::Colour colour;
 };
 
 /// Consecutive links of one kind under a name.
@@ -157,9 +165,10 @@ struct Scene {
   std::shared_ptr<const Liaisons> liaisons;
   std::vector<Port> ports;
   SignalReader signals;
-  std::vector<double> radius_m;      ///< per MAT, as it is drawn; 0 for a point
-  std::vector<LayoutPoint> layout;   ///< per MAT in a 1-D scene, else empty
-  std::optional<Subspace> subspace;  ///< by a reduction; then there is no layout
+  std::vector<double> radius_m;        ///< per MAT, as it is drawn; 0 for a point
+  std::vector<ColouredRange> colours;  ///< in the order of the MATs, none of which is in two
+  std::vector<LayoutPoint> layout;     ///< per MAT in a 1-D scene, else empty
+  std::optional<Subspace> subspace;    ///< by a reduction; then there is no layout
   ReductionOptions reduce;
   std::string
       start_state_file;  ///< of a state that a run has saved, as its file names it; may be empty

@@ -49,7 +49,7 @@ test('the messages are those of the contract', () => {
     'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [
       'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SurfaceDescription',
-      'SceneDescription', 'SceneFrame', 'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
+      'ColouredRange', 'SceneDescription', 'SceneFrame', 'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
     ],
     'topics.idl': [],
   };

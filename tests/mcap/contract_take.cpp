@@ -207,6 +207,21 @@ Sample any_description() {
                         {"size_m", surface.size_m()}});
     message.surfaces().push_back(surface);
   }
+  json colours = json::array();
+  for (std::size_t i = any_u32() % 3; i > 0; --i) {
+    msg::ColouredRange range;
+    range.first(any_u32());
+    range.count(any_u32());
+    range.red(static_cast<std::uint8_t>(any_u32()));
+    range.green(static_cast<std::uint8_t>(any_u32()));
+    range.blue(static_cast<std::uint8_t>(any_u32()));
+    colours.push_back({{"first", range.first()},
+                       {"count", range.count()},
+                       {"red", range.red()},
+                       {"green", range.green()},
+                       {"blue", range.blue()}});
+    message.colours().push_back(range);
+  }
   const json none = json::array();
   return {"scene/description",
           "cordis::msg::SceneDescription",
@@ -217,7 +232,8 @@ Sample any_description() {
            {"mat_mass_kg", none},        {"mat_radius_m", none}, {"matter", none},
            {"link_ends", none},          {"links", none},        {"state_machines", none},
            {"link_state_machine", none}, {"ports", ports},       {"port_frames", port_frames},
-           {"signals", signals},         {"scene_file", ""},     {"surfaces", surfaces}}};
+           {"signals", signals},         {"scene_file", ""},     {"surfaces", surfaces},
+           {"colours", colours}}};
 }
 
 bool write_take(const std::filesystem::path& folder, mcap::Compression compression) {

@@ -74,37 +74,44 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionIsReadWithoutWhatItLacks) {
   for (const char* file : {"s", "sc", "sce", "scen"}) {  // each alignment of what follows
     msg::SceneDescription description;
     description.scene_file(file);
-    for (const std::uint32_t version : {3u, 4u, 5u}) {
+    for (const std::uint32_t version : {3u, 4u, 5u, 6u}) {
       description.wire_version(version);
       std::vector<std::byte> payload = encode(description);
       msg::SceneDescription read;
       ASSERT_TRUE(decode(payload, read));
-      payload.resize(payload.size() - 4);  // the count of `surfaces`
-      EXPECT_EQ(decode(payload, read), version <= 4u) << file;
-      if (version <= 4u) {
+      for (const std::uint32_t last : {5u, 4u, 3u}) {
+        // the count of `colours`, of `surfaces`, of `port_frames`
+        payload.resize(payload.size() - 4);
+        EXPECT_EQ(decode(payload, read), version <= last) << file << ", version " << version;
+        if (version > last) continue;
         EXPECT_EQ(read.scene_file(), file);
-        EXPECT_TRUE(read.surfaces().empty());
+        EXPECT_TRUE(read.colours().empty());
+        EXPECT_TRUE(last == 5u || read.surfaces().empty());
+        EXPECT_TRUE(last >= 4u || read.port_frames().empty());
       }
-      payload.resize(payload.size() - 4);  // the count of `port_frames`
-      EXPECT_EQ(decode(payload, read), version == 3u) << file;
-      if (version != 3u) continue;
-      EXPECT_EQ(read.scene_file(), file);
-      EXPECT_TRUE(read.port_frames().empty());
     }
   }
 }
 
-TEST(Payload, OfADescriptionOfWireVersion4KeepsFramesOfPorts) {
+TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   msg::SceneDescription description;
   description.wire_version(4);
   description.scene_file("s");
   description.port_frames().resize(2);
   description.port_frames()[1].direction({0.0, 1.0, 0.5});
   std::vector<std::byte> payload = encode(description);
-  payload.resize(payload.size() - 4);  // the count of `surfaces`
+  payload.resize(payload.size() - 8);  // the counts of `surfaces` and `colours`
   msg::SceneDescription read;
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.port_frames(), description.port_frames());
+
+  description.wire_version(5);
+  description.surfaces().resize(1);
+  description.surfaces()[0].size_m({0.25, 0.5, 0.125});
+  payload = encode(description);
+  payload.resize(payload.size() - 4);  // the count of `colours`
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.surfaces(), description.surfaces());
 }
 
 /// A reader with an Arrival takes samples out of DDS in the thread that receives them.

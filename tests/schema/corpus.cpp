@@ -135,7 +135,7 @@ parts:
       hub: {kind: mass, at_m: [0, 0], ball: $ball}
       rim: {kind: string, count: 3, mass_kg: 0.1, from_m: [1, 0], to_m: [2, 0], ends: $ends, stiffness_n_per_m: 10}
 matter:
-  one: {kind: mass, mass_kg: 0.1, at_m: [[0, 0], [1, 0]], velocity_m_per_s: [0, 0], drawn_radius_m: 0.01, fixed: true}
+  one: {kind: mass, mass_kg: 0.1, at_m: [[0, 0], [1, 0]], velocity_m_per_s: [0, 0], drawn_radius_m: 0.01, fixed: true, color: '#ff8800'}
   pushed: {kind: mass, displacement_m: [0, 0], mass_kg: 0.1, at_m: [0, 3], driven: {force_n: [sin(time_s), 0]}}
   some: {kind: points, displacement_m: [0, 0], at_m: [[2, 0], [3, 0]], mass_kg: [0.1, 0.2], velocity_m_per_s: [[0, 0], [0, 0]], radius_m: 0.01, fixed: [0]}
   string: {kind: string, displacement_m: [0, 0], count: 4, mass_kg: 0.01, from_m: [4, 0], to_m: [5, 0], ends: fixed, stiffness_n_per_m: 100, tension_n: 1}
@@ -153,7 +153,7 @@ matter:
   chest: {kind: box, center_m: [0, -5], size_m: [0.1, 0.1]}
   crate: {kind: box, from_m: [1, -5], to_m: [2, -6]}
   pole: {kind: cylinder, center_m: [3, -5], radius_m: 0.1}
-  row: {part: wheel, translate_m: [20, 0], rotate_deg: 10, repeat: {count: 2, translate_m: [1, 0], rotate_deg: 5}}
+  row: {part: wheel, translate_m: [20, 0], rotate_deg: 10, color: teal, repeat: {count: 2, translate_m: [1, 0], rotate_deg: 5}}
 liaisons:
   touch: {stiffness_n_per_m: 100, range_m: 0.1, pulls: false}
   steel: {kind: bending, stiffness_n_m_per_rad: 1, viscosity_n_m_s_per_rad: 0.1, rest_rad: 0.1, length_m: 0.1}

@@ -15,6 +15,7 @@ using config::KeyKind;
 namespace {
 
 constexpr const char* kParameterOfAPart = "^\\$";
+constexpr const char* kColour = "^([a-z]+|#[0-9A-Fa-f]{6})$";
 
 /// Mappings that the schema describes once and refers to.
 const std::map<KeyPath, std::string>& definitions() {
@@ -74,6 +75,7 @@ std::set<std::string> types_of(const KeyFacts& facts) {
       {KeyKind::kTruth, {"boolean"}},
       {KeyKind::kText, {"string", "number", "boolean"}},
       {KeyKind::kChoice, {"string"}},
+      {KeyKind::kColour, {"string"}},
       {KeyKind::kNumbers, {"array", "number"}},
       {KeyKind::kIntegers, {"array", "integer"}},
       {KeyKind::kMapping, {"object"}},
@@ -121,6 +123,10 @@ Json scalar(const KeyFacts& facts, const std::string& key, bool may_be_parameter
     }
     add_default(facts, schema);
     return schema;
+  }
+  if (kinds == std::set{KeyKind::kColour}) {
+    const Json colour{{"type", "string"}, {"pattern", kColour}};
+    return may_be_parameter ? Json{{"anyOf", {colour, parameter_of_a_part()}}} : colour;
   }
   std::set<std::string> types = types_of(facts);
   if (is_choice) types = {"string", "number", "boolean"};

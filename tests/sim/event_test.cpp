@@ -120,6 +120,19 @@ TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
   EXPECT_TRUE(message.link_state_machine().empty());
 }
 
+TEST(Description, HasTheColoursOfTheScene) {
+  auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
+  EXPECT_TRUE(describe(*scene, 1, 1).colours().empty());
+  scene->colours.push_back({1, 2, {255, 136, 7}});
+  const msg::SceneDescription message = describe(*scene, 1, 1);
+  ASSERT_EQ(message.colours().size(), 1u);
+  const msg::ColouredRange& range = message.colours()[0];
+  EXPECT_EQ(range.first(), 1u);
+  EXPECT_EQ(range.count(), 2u);
+  EXPECT_EQ((std::vector<int>{range.red(), range.green(), range.blue()}),
+            (std::vector<int>{255, 136, 7}));
+}
+
 TEST(Runner, GathersTheChangesOfEveryStepAndShowsTheStatesInTheFrame) {
   Runner runner(std::make_unique<LoadedScene>(breaking_scene(6), kEpochOfSim, 1), false);
   FrameStore& frames = runner.loaded_scene().frames;

@@ -61,6 +61,7 @@ void take_out(const std::vector<bool>& mats, const std::vector<bool>& links, sce
   of_mats.keep(scene.radius_m);
   of_mats.keep(scene.layout);
   of_mats.apply_to_ranges(scene.matter);
+  of_mats.apply_to_ranges(scene.colours);
   of_links.keep(network.links);
   std::vector<scene::LinkGroup> linear;
   std::vector<scene::LinkGroup> others;

@@ -17,6 +17,7 @@ struct GeneratedMatter {
   std::optional<LinkLaw> law;                     ///< of all its links; none when there are several
   std::vector<double> radius_m;                   ///< per MAT; 0 for a punctual mass
   std::vector<double> drawn_radius_m;             ///< per MAT
+  std::optional<config::Colour> colour;           ///< of all of it
   std::vector<NamedRange> names;                  ///< of MATs within it, from 0
   std::vector<engine::Surface> surfaces;          ///< their MATs counted from 0
   std::vector<engine::TimeFunction> time_functions;

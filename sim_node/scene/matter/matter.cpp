@@ -155,6 +155,7 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   } else {
     matter.drawn_radius_m = matter.radius_m;  // it is drawn as it is
   }
+  matter.colour = reader.optional_colour("color");
   reader.finish();
   return matter;
 }

@@ -88,6 +88,17 @@ void Assembly::add_drives(const GeneratedMatter& matter, std::uint32_t first_mat
   }
 }
 
+void Assembly::add_colour(const config::Colour& given, std::uint32_t first_mat) {
+  const std::uint32_t count = mat_count() - first_mat;
+  std::vector<ColouredRange>& ranges = scene.colours;
+  if (!ranges.empty() && ranges.back().colour == given &&
+      ranges.back().first + ranges.back().count == first_mat) {
+    ranges.back().count += count;
+  } else if (count > 0) {
+    ranges.push_back({first_mat, count, given});
+  }
+}
+
 void Assembly::refuse_more(const config::Place& place, const std::string& message,
                            const std::string& hint) {
   if (!is_full) problems.error(place, message, hint);

@@ -67,6 +67,8 @@ struct Assembly {
   /// Adds the MATs and links of an entry, where the part they belong to stands. @return false when
   /// the scene would become too large, which is a problem.
   [[nodiscard]] bool add(GeneratedMatter matter, const config::Place& place);
+  /// Gives a colour to the MATs from `first_mat` on.
+  void add_colour(const config::Colour& colour, std::uint32_t first_mat);
   /// Remembers that the scene is as large as it may be: the first such problem is reported, and
   /// nothing is read that would make it larger.
   void refuse_more(const config::Place& place, const std::string& message,
@@ -108,7 +110,9 @@ struct Assembly {
   Parts parts;
   Placement placement;                  ///< of the part that is being added
   std::vector<const Part*> open_parts;  ///< from the outermost to it
-  std::set<const Part*> faulty_parts;   ///< whose faults have been reported
+  std::optional<config::Colour>
+      colour;                          ///< of what has none itself in the part that is being added
+  std::set<const Part*> faulty_parts;  ///< whose faults have been reported
   std::size_t part_uses = 0;
   std::size_t set_members = 0;
   std::size_t set_surfaces = 0;

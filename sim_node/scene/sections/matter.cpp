@@ -20,10 +20,12 @@ void read_generated(Assembly& assembly, const Value::Entry& entry) {
                                            assembly.scene.reduce.series, assembly.problems);
   const std::vector<NamedRange> inner_names = matter.names;
   const std::optional<LinkLaw> law = matter.law;
+  const std::optional<config::Colour> colour = matter.colour ? matter.colour : assembly.colour;
   const std::uint32_t first_mat = assembly.mat_count();
   const LinkCounts links_before = assembly.link_counts();
   const bool sound = assembly.problems.error_count() == errors_before &&
                      assembly.add(std::move(matter), entry.key_place);
+  if (sound && colour) assembly.add_colour(*colour, first_mat);
 
   assembly.names.add({entry.key, Named::kMatter, first_mat, assembly.mat_count() - first_mat, sound,
                       entry.key_place},

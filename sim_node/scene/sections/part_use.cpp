@@ -24,8 +24,9 @@ struct PartUse {
   const Part* part = nullptr;
   PartBody body;
   Placement placement;
-  Placement step;            ///< from one copy to the next
-  std::uint32_t copies = 0;  ///< 0: it is not repeated
+  Placement step;                        ///< from one copy to the next
+  std::uint32_t copies = 0;              ///< 0: it is not repeated
+  std::optional<config::Colour> colour;  ///< of its matter that has none itself
   std::optional<DriveSpec> drive;
   config::Place drive_place;
   StartMotion motion;  ///< of all of a copy, along the axes of what the part is used in
@@ -52,6 +53,7 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   use.placement = read_placement(reader, assembly.scene.space(), assembly.problems);
   const Value overrides = reader.optional_mapping("parameters");
   const Value repeat = reader.optional_mapping("repeat");
+  use.colour = reader.optional_colour("color");
   use.drive = read_driven(reader, assembly.scene.space(), assembly.problems);
   if (reader.has("driven")) use.drive_place = reader.optional_value("driven").place();
   use.motion = read_motion(reader, assembly.scene.space());
@@ -115,6 +117,8 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
   const Placement outer = assembly.placement;
   assembly.placement = outer * placement;
   assembly.open_parts.push_back(use.part);
+  const std::optional<config::Colour> outer_colour = assembly.colour;
+  if (use.colour) assembly.colour = use.colour;
   const std::string outer_scope = assembly.names.full("");
   {
     const Names::Scope scope(assembly.names, name);
@@ -126,6 +130,7 @@ bool add_copy(Assembly& assembly, const PartUse& use, const std::string& name,
   assembly.liaisons->pool().enter(outer_scope);
   assembly.open_parts.pop_back();
   assembly.placement = outer;
+  assembly.colour = outer_colour;
   sound = sound && start_copy(assembly, use, first);
   return sound && assembly.problems.error_count() == errors_before;
 }
