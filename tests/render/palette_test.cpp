@@ -3,10 +3,12 @@
 
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <set>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace cordis::viz {
 namespace {
@@ -29,6 +31,32 @@ TEST(Palette, DistinguishesBodiesInBothThemes) {
     std::set<std::string> distinct;
     for (const Colour& colour : palette.bodies) distinct.insert(hex_of(colour));
     EXPECT_EQ(distinct.size(), palette.bodies.size());
+  }
+}
+
+TEST(Palette, ShowsColoursOfScenesAsThePageDoes) {
+  // tests/viz/page_parts_test.mjs has the same table.
+  std::ifstream file(std::string(CORDIS_SOURCE_DIR) + "/tests/golden/readable_colours.json");
+  const nlohmann::json table = nlohmann::json::parse(file);
+  ASSERT_FALSE(table["shown"].empty());
+  for (const nlohmann::json& row : table["shown"]) {
+    const Colour wanted = colour_of(row["wanted"]);
+    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kDark))), row["dark"]) << row;
+    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kLight))), row["light"]) << row;
+  }
+}
+
+TEST(Palette, ShowsEveryColourAgainstBothBackgrounds) {
+  std::mt19937 random(17);
+  const auto byte = [&random] { return static_cast<std::uint8_t>(random() & 255u); };
+  for (int run = 0; run < 1000; ++run) {
+    const Colour wanted{byte(), byte(), byte()};
+    for (const Theme theme : {Theme::kDark, Theme::kLight}) {
+      const Palette& palette = palette_of(theme);
+      const Colour shown = readable(wanted, palette);
+      EXPECT_GE(contrast(shown, palette.background), kMinContrast) << hex_of(wanted);
+      EXPECT_TRUE(shown == wanted || contrast(wanted, palette.background) < kMinContrast);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // viz_node/render/palette.cpp
 #include "viz_node/render/palette.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -58,6 +59,34 @@ Colour mix(const Colour& first, const Colour& second, double share) noexcept {
   };
   return {between(first.red, second.red), between(first.green, second.green),
           between(first.blue, second.blue)};
+}
+
+namespace {
+
+/// Relative luminance of sRGB, 0..1.
+double luminance(const Colour& colour) noexcept {
+  const auto linear = [](std::uint8_t byte) {
+    const double share = byte / 255.0;
+    return share <= 0.03928 ? share / 12.92 : std::pow((share + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue);
+}
+
+}  // namespace
+
+double contrast(const Colour& first, const Colour& second) noexcept {
+  const double a = luminance(first);
+  const double b = luminance(second);
+  return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
+}
+
+Colour readable(const Colour& wanted, const Palette& palette) noexcept {
+  constexpr int kSteps = 20;
+  for (int step = 0; step < kSteps; ++step) {
+    const Colour colour = mix(wanted, palette.text, static_cast<double>(step) / kSteps);
+    if (contrast(colour, palette.background) >= kMinContrast) return colour;
+  }
+  return palette.text;
 }
 
 std::string hex_of(const Colour& colour) {

@@ -44,6 +44,16 @@ const Palette& palette_of(Theme theme);
 /// The colour between two, `share` of the way from the first, 0..1.
 Colour mix(const Colour& first, const Colour& second, double share) noexcept;
 
+/// The ratio of contrast of two colours, 1 to 21 (WCAG 2.1).
+double contrast(const Colour& first, const Colour& second) noexcept;
+
+/// The least contrast of a mark of a view to its background (WCAG 2.1, 1.4.11).
+inline constexpr double kMinContrast = 3.0;
+
+/// A colour that a scene asks for, as a theme shows it: as far towards that of texts as it takes to
+/// be seen on the background.
+Colour readable(const Colour& wanted, const Palette& palette) noexcept;
+
 /// "#6bb8fa"
 std::string hex_of(const Colour& colour);
 /// @throws std::invalid_argument unless the text is # and six hexadecimal digits.

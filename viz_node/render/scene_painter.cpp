@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "viz_node/render/number_text.h"
@@ -15,6 +17,7 @@ namespace {
 constexpr std::size_t kFewMats = 3000;  // which are drawn larger than they are, to be seen
 constexpr double kFade = 0.985;         // of the fastest speed, per frame
 constexpr double kGridCells = 24.0;     // across the larger side of the scene, about
+constexpr double kEdgeShare = 0.35;     // of the colour of texts in the edge of a coloured surface
 constexpr double kRingGap = 1.7;        // radius of the ring of a port, in radii of its ball
 
 /// Smallest radii by look [pixels].
@@ -31,11 +34,6 @@ double distance(const Point& a, const Point& b) noexcept {
   const double y = a[1] - b[1];
   const double z = a[2] - b[2];
   return std::sqrt(x * x + y * y + z * z);
-}
-
-/// The first part of a name: `stack` of `stack[2].balls`.
-std::string body_name(const std::string& name) {
-  return name.substr(0, name.find_first_of(".["));
 }
 
 /// True if a range is the virtual tool of a port: the MAT that has its name and is not its own.
@@ -59,6 +57,7 @@ bool is_surface(const msg::SceneDescription& description, const msg::NamedRange&
 
 ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme)
     : palette_(palette_of(theme)),
+      colours_(description, palette_),
       space_(description.space()),
       radius_(description.mat_radius_m()),
       link_ends_(description.link_ends()),
@@ -68,6 +67,9 @@ ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme
       })) {
   find_looks(description);
   find_bodies(description);
+  if (!description.colours().empty()) find_coloured_parts(description);
+  find_coloured_surfaces(description);
+  find_patterns(description);
 }
 
 void ScenePainter::find_looks(const msg::SceneDescription& description) {
@@ -87,8 +89,9 @@ void ScenePainter::find_looks(const msg::SceneDescription& description) {
   for (const msg::PortDescription& port : description.ports()) {
     if (look_[port.mat()] == Look::kMass) look_[port.mat()] = Look::kTool;
   }
-  has_fixed_ = std::ranges::any_of(
-      look_, [](Look look) { return look == Look::kFixedBall || look == Look::kFixedPoint; });
+  for (std::size_t mat = 0; mat < look_.size() && !has_fixed_; ++mat)
+    has_fixed_ = (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint) &&
+                 !colours_.wanted(mat);
   has_ports_ = !description.ports().empty();
 }
 
@@ -102,10 +105,71 @@ void ScenePainter::find_bodies(const msg::SceneDescription& description) {
     const std::string name = body_name(range.name());
     const auto [found, is_new] =
         numbers.try_emplace(name, static_cast<std::uint32_t>(numbers.size()));
-    if (is_new) bodies_.push_back({name, palette_.bodies[found->second % palette_.bodies.size()]});
+    if (is_new)
+      bodies_.push_back(
+          {name, palette_.bodies[found->second % palette_.bodies.size()], MatterMark::kMass});
     std::fill_n(body_.begin() + range.first(), range.count(), found->second);
   }
-  if (bodies_.empty()) bodies_.push_back({"mass", palette_.bodies.front()});
+  if (bodies_.empty()) bodies_.push_back({"mass", palette_.bodies.front(), MatterMark::kMass});
+}
+
+void ScenePainter::name_fixed(const Body& body) {
+  const bool is_known = std::ranges::any_of(bodies_, [&body](const Body& other) {
+    return other.colour == body.colour && other.name == body.name;
+  });
+  if (!is_known) bodies_.push_back(body);
+}
+
+/// Splits bodies by the colours that the scene gives, and names what is fixed and has one.
+void ScenePainter::find_coloured_parts(const msg::SceneDescription& description) {
+  std::vector<bool> is_mass;
+  for (const Look look : look_) is_mass.push_back(look == Look::kMass);
+  colours_.split(description, is_mass, body_, bodies_);
+  for (const msg::NamedRange& range : description.matter()) {
+    if (range.count() == 0) continue;
+    const std::uint32_t mat = range.first();
+    const bool is_fixed = look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint;
+    if (const std::optional<Colour> colour = colours_.wanted(mat); is_fixed && colour)
+      name_fixed({body_name(range.name()), *colour, MatterMark::kFixed});
+  }
+}
+
+void ScenePainter::find_coloured_surfaces(const msg::SceneDescription& description) {
+  for (const msg::SurfaceDescription& surface : surfaces_) {
+    const auto range =
+        std::ranges::find_if(description.matter(), [&surface](const msg::NamedRange& named) {
+          return named.count() == 1 && named.name() == surface.name();
+        });
+    const bool has_mat = range != description.matter().end();
+    const std::optional<Colour> colour = has_mat ? colours_.wanted(range->first()) : std::nullopt;
+    if (!colour) {
+      surface_colours_.push_back({palette_.surface, palette_.surface_edge});
+      has_plain_surfaces_ = true;
+      continue;
+    }
+    surface_colours_.push_back({*colour, mix(*colour, palette_.text, kEdgeShare)});
+    name_fixed({body_name(surface.name()), *colour, MatterMark::kSurface});
+  }
+}
+
+void ScenePainter::find_patterns(const msg::SceneDescription& description) {
+  const std::vector<std::uint32_t>& machines = description.link_state_machine();
+  std::map<std::uint32_t, std::size_t> counts;
+  for (const std::uint32_t machine : machines) ++counts[machine];
+  if (counts.size() < 2) return;
+  std::vector<std::uint32_t> order;
+  for (const auto& [machine, count] : counts) order.push_back(machine);
+  std::ranges::stable_sort(order, std::greater(),
+                           [&counts](std::uint32_t machine) { return counts[machine]; });
+  std::map<std::uint32_t, LinePattern> patterns;
+  for (const std::uint32_t machine : order) {
+    const auto pattern = static_cast<LinePattern>(std::min(patterns.size(), kLinePatternCount - 1));
+    patterns[machine] = pattern;
+    const bool has_states = machine < description.state_machines().size();
+    link_groups_.push_back(
+        {has_states ? description.state_machines()[machine].name() : std::string(), pattern});
+  }
+  for (const std::uint32_t machine : machines) link_pattern_.push_back(patterns[machine]);
 }
 
 void ScenePainter::start(const msg::SceneFrame& frame) {
@@ -168,7 +232,8 @@ void ScenePainter::measure_speeds(const msg::SceneFrame& frame) {
 
 Colour ScenePainter::colour_of(std::size_t mat, double strength) const {
   Colour colour = palette_.port;
-  if (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint) colour = palette_.fixed;
+  if (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint)
+    colour = colours_.wanted(mat).value_or(palette_.fixed);
   if (look_[mat] == Look::kMass) {
     colour = bodies_[body_[mat]].colour;
     if (colour_by_ == ColourBy::kSpeed) {
@@ -247,8 +312,10 @@ void ScenePainter::draw_link(Canvas& canvas, const ViewOptions& options, std::si
   const auto between = [&](double share) {
     return Place{from.x + share * x, from.y + share * y, from.z + share * z};
   };
-  canvas.link(between(begin), between(end), 1.4 * options.mark_scale,
-              colour_of_link(link, frame, options.strength));
+  const LinePattern pattern = link_pattern_.empty() ? LinePattern::kSolid : link_pattern_[link];
+  draw_line(canvas, options.area,
+            {between(begin), between(end), 1.4 * options.mark_scale, pattern, options.mark_scale},
+            colour_of_link(link, frame, options.strength));
 }
 
 void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
@@ -327,7 +394,7 @@ void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCa
   project_all(options, camera, frame);
   const std::vector<msg::SurfaceDescription> none;
   const SurfacePainter surfaces(options.shows_surroundings ? surfaces_ : none, home, space_, camera,
-                                options.inner, options.mark_scale, palette_);
+                                options.inner, options.mark_scale, surface_colours_);
   canvas.begin_view(options.area, options.words);
   // A plane is a grid itself.
   if (options.shows_surroundings && (is_flat() || !has_planes_))

@@ -8,7 +8,9 @@
 
 #include "idl/scene.h"
 #include "viz_node/render/canvas.h"
+#include "viz_node/render/line_pattern.h"
 #include "viz_node/render/palette.h"
+#include "viz_node/render/scene_colours.h"
 #include "viz_node/render/surface_painter.h"
 #include "viz_node/render/view_camera.h"
 
@@ -17,10 +19,10 @@ namespace cordis::viz {
 /// What the colours of masses say.
 enum class ColourBy : std::uint8_t { kBody, kSpeed };
 
-/// A body of the scene: all MATs whose names begin alike, as `stack` of `stack[2].balls`.
-struct Body {
-  std::string name;
-  Colour colour;
+/// Links of one liaison with states, or those without, where a scene has several such groups.
+struct LinkGroup {
+  std::string name;  ///< of the liaison; empty for links without states
+  LinePattern pattern = LinePattern::kSolid;
 };
 
 /// Where a view is drawn, and how.
@@ -58,11 +60,14 @@ class ScenePainter {
   void draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera, const Box& home,
             const msg::SceneFrame& frame);
 
-  /// The bodies that have masses; those after the last colour have the first again.
+  /// The bodies that have masses, and what else has a colour of its own. Bodies after the last colour
+  /// have the first again.
   const std::vector<Body>& bodies() const noexcept { return bodies_; }
-  bool has_fixed() const noexcept { return has_fixed_; }
+  /// What each pattern of links is, the most frequent first; empty where all are of one kind.
+  const std::vector<LinkGroup>& link_groups() const noexcept { return link_groups_; }
+  bool has_fixed() const noexcept { return has_fixed_; }  ///< without a colour of its own
   bool has_ports() const noexcept { return has_ports_; }
-  bool has_surfaces() const noexcept { return !surfaces_.empty(); }
+  bool has_surfaces() const noexcept { return has_plain_surfaces_; }  ///< likewise
   const Palette& palette() const noexcept { return palette_; }
   /// The speed that has the last colour [m/s]; 0 before two frames were drawn.
   double fastest_speed() const noexcept { return fastest_; }
@@ -81,6 +86,11 @@ class ScenePainter {
   Box matter_bounds(const msg::SceneFrame& frame, double outliers) const;
   void find_bodies(const msg::SceneDescription& description);
   void find_looks(const msg::SceneDescription& description);
+  void find_coloured_parts(const msg::SceneDescription& description);
+  void find_coloured_surfaces(const msg::SceneDescription& description);
+  void find_patterns(const msg::SceneDescription& description);
+  /// Gives a name in the legend to what looks like `body`.
+  void name_fixed(const Body& body);
   void measure_speeds(const msg::SceneFrame& frame);
   Colour colour_of(std::size_t mat, double strength) const;
   Colour colour_of_link(std::size_t link, const msg::SceneFrame& frame, double strength) const;
@@ -97,13 +107,18 @@ class ScenePainter {
                  const Box& home) const;
 
   const Palette& palette_;
+  SceneColours colours_;
   std::uint32_t space_;
   std::vector<float> radius_;        // [m], of punctual MATs 0 until start()
   std::vector<Look> look_;           // per MAT
   std::vector<std::uint32_t> body_;  // per MAT
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> link_ends_;
+  std::vector<LinePattern> link_pattern_;  // per link; empty where all are solid
+  std::vector<LinkGroup> link_groups_;
   std::vector<msg::SurfaceDescription> surfaces_;
+  std::vector<SurfaceColours> surface_colours_;  // per surface
+  bool has_plain_surfaces_ = false;
   bool has_planes_ = false;
   bool has_fixed_ = false;
   bool has_ports_ = false;

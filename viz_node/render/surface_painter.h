@@ -13,15 +13,22 @@
 
 namespace cordis::viz {
 
+/// The colours of a surface.
+struct SurfaceColours {
+  Colour face;
+  Colour edge;
+};
+
 /// Draws the surfaces around one box, as one camera sees them. Canvases without depth draw matter
 /// between the bodies: layer 0, body 0, layer 1, body 1 and so on, from back to front.
 class SurfacePainter {
  public:
   /// @param inner       where the camera's view lies in the canvas
   /// @param line_width  of edges [pixels]
+  /// @param colours     per surface
   SurfacePainter(const std::vector<msg::SurfaceDescription>& surfaces, const Box& home,
                  std::uint32_t space, const ViewCamera& camera, const Rectangle& inner,
-                 double line_width, const Palette& palette);
+                 double line_width, const std::vector<SurfaceColours>& colours);
 
   /// Draws planes and sections, behind everything else.
   void draw_backdrops(Canvas& canvas) const;
@@ -33,23 +40,29 @@ class SurfacePainter {
 
  private:
   /// A box or a cylinder, and which of its faces the viewer sees.
-  struct Body {
+  struct Solid {
     SurfaceShape shape;
+    SurfaceColours colours;
     std::vector<bool> is_seen;
     double z;  // of its middle [pixels]
   };
 
-  void add_body(SurfaceShape shape);
-  void draw_face(Canvas& canvas, const SurfaceFace& face, bool is_deep) const;
-  void draw_edge(Canvas& canvas, const SurfaceEdge& edge, bool is_deep) const;
+  /// A plane or a section.
+  struct Backdrop {
+    SurfaceShape shape;
+    SurfaceColours colours;
+  };
+
+  void add_solid(SurfaceShape shape, const SurfaceColours& colours);
+  void draw_face(Canvas& canvas, const SurfaceFace& face, const Colour& colour, bool is_deep) const;
+  void draw_edge(Canvas& canvas, const SurfaceEdge& edge, const Colour& colour, bool is_deep) const;
   Corner corner_of(const Point& point) const noexcept;
 
   const ViewCamera& camera_;
   const Rectangle inner_;
   const double line_width_;
-  const Palette& palette_;
-  std::vector<SurfaceShape> backdrops_;
-  std::vector<Body> bodies_;
+  std::vector<Backdrop> backdrops_;
+  std::vector<Solid> bodies_;
 };
 
 }  // namespace cordis::viz
