@@ -111,7 +111,7 @@ std::string encode_topology(const msg::SceneDescription& description, std::uint3
   const auto links = static_cast<std::uint32_t>(description.link_ends().size() / 2);
   const std::vector<std::uint32_t>& machines = description.link_state_machine();
   std::string bytes(
-      kTopologyHeaderBytes + 5 * std::size_t{mats} + 8 * std::size_t{links} + 2 * machines.size(),
+      kTopologyHeaderBytes + 9 * std::size_t{mats} + 8 * std::size_t{links} + 2 * machines.size(),
       '\0');
   Packer packer(bytes.data());
   packer.put_prefix(MessageType::kTopology, kTopologyHeaderBytes)
@@ -120,6 +120,7 @@ std::string encode_topology(const msg::SceneDescription& description, std::uint3
       .put(links)
       .put(static_cast<std::uint32_t>(machines.size()))
       .put_all(description.mat_radius_m())
+      .put_all(description.mat_mass_kg())
       .put_all(description.link_ends());
   for (const std::uint32_t machine : machines)
     packer.put(static_cast<std::uint16_t>(std::min<std::uint32_t>(machine, kNoStateMachine)));

@@ -11,7 +11,7 @@
 namespace cordis::viz {
 
 inline constexpr std::uint32_t kMagic = 0x31534443;  // the bytes "CDS1"
-inline constexpr std::uint8_t kProtocolVersion = 2;
+inline constexpr std::uint8_t kProtocolVersion = 3;
 inline constexpr std::size_t kFrameHeaderBytes = 72;
 inline constexpr std::size_t kSignalsHeaderBytes = 48;
 inline constexpr std::size_t kTopologyHeaderBytes = 24;
@@ -46,7 +46,7 @@ std::string encode_sound(const msg::SceneSound& sound, std::uint32_t scene);
 
 inline constexpr std::uint16_t kNoStateMachine = 65535;  ///< of a link in the topology
 
-/// What a page needs once per scene: radii, link ends, state machines of links, kinds. The description has been checked.
+/// What a page needs once per scene: radii, masses, link ends, state machines of links, kinds. The description has been checked.
 std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene);
 
 }  // namespace cordis::viz

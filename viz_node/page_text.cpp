@@ -1,6 +1,9 @@
 // viz_node/page_text.cpp
 #include "viz_node/page_text.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -19,6 +22,7 @@ constexpr std::size_t kLongestText = 300;    // of a text that another process w
 constexpr std::size_t kLongestReply = 4000;  // the parameters of a scene, line by line
 constexpr std::size_t kMaxStates = 64;       // of a liaison, and liaisons whose changes are counted
 constexpr std::size_t kMaxNames = 2000;  // names of matter, links and ports that a page receives
+constexpr std::size_t kMaxColours = 20'000;  // ranges of MATs with a colour of the scene, likewise
 
 std::string clipped(const std::string& text) {
   return text.substr(0, kLongestText);
@@ -49,15 +53,42 @@ Json axes_of(const msg::PortDescription& port) {
   return list;
 }
 
-Json ports(const std::vector<msg::PortDescription>& described) {
+Json colours(const std::vector<msg::ColouredRange>& ranges) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(ranges.size(), kMaxColours); ++i) {
+    const msg::ColouredRange& range = ranges[i];
+    std::array<char, 8> hex{};
+    std::snprintf(hex.data(), hex.size(), "#%02x%02x%02x", range.red(), range.green(),
+                  range.blue());
+    list.push_back({{"first", range.first()}, {"count", range.count()}, {"colour", hex.data()}});
+  }
+  return list;
+}
+
+/// A device as a page draws it.
+Json device_json(const msg::DeviceDescription& device) {
+  Json travels = Json::array();
+  const auto count = std::min<std::uint32_t>(device.coordinate_count(), msg::MAX_AXES);
+  for (std::size_t axis = 0; axis < count; ++axis) travels.push_back(device.travel_m()[axis]);
+  return {{"name", clipped(device.device())},
+          {"key_pitch_m", device.key_pitch_m()},
+          {"lowest_m", device.lowest_m()},
+          {"travel_m", std::move(travels)}};
+}
+
+Json ports(const std::vector<msg::PortDescription>& described,
+           const std::vector<msg::PortFrame>& frames) {
   Json list = Json::array();
   for (std::size_t i = 0; i < std::min(described.size(), kMaxNames); ++i) {
     const auto& port = described[i];
+    const msg::PortFrame frame = i < frames.size() ? frames[i] : msg::PortFrame();
     list.push_back({{"name", clipped(port.name())},
                     {"device", clipped(port.device())},
                     {"role", port.role() == msg::ROLE_MASS ? "mass" : "liaison"},
                     {"mat", port.mat()},
-                    {"axes", axes_of(port)}});
+                    {"axes", axes_of(port)},
+                    {"rest", frame.rest_m()},
+                    {"direction", frame.direction()}});
   }
   return list;
 }
@@ -293,21 +324,26 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"matter", ranges(description.matter())},
                   {"links", ranges(description.links())},
                   {"state_machines", state_machines(description.state_machines())},
-                  {"ports", ports(description.ports())},
+                  {"ports", ports(description.ports(), description.port_frames())},
                   {"signals", std::move(signals)},
-                  {"surfaces", surfaces(description.surfaces())}});
+                  {"surfaces", surfaces(description.surfaces())},
+                  {"colours", colours(description.colours())}});
 }
 
-std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
-                        const ReceivedReplies& replies, const MirrorFigures& figures,
-                        std::uint32_t scene, std::int64_t now_nsec) {
+std::string status_text(const std::vector<ReportedNode>& nodes,
+                        const std::vector<msg::DeviceDescription>& devices,
+                        const ReceivedEvents& events, const ReceivedReplies& replies,
+                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec) {
   Json list = Json::array();
   for (const ReportedNode& node : nodes) list.push_back(node_json(node, now_nsec));
+  Json described = Json::array();
+  for (const msg::DeviceDescription& device : devices) described.push_back(device_json(device));
   return written(
       {{"type", "status"},
        {"scene", scene},
        {"sent_nsec", now_nsec},
        {"nodes", std::move(list)},
+       {"devices", std::move(described)},
        {"events", events_json(events)},
        {"replies", replies_json(replies)},
        {"viz",

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "idl/control.h"
+#include "idl/gesture.h"
 #include "idl/scene.h"
 
 namespace cordis::viz {
@@ -53,9 +54,10 @@ struct PageRights {
 std::string hello_text(const std::string& session, const std::string& node,
                        const PageRights& rights, bool may_command);
 std::string description_text(const msg::SceneDescription& description, std::uint32_t scene);
-std::string status_text(const std::vector<ReportedNode>& nodes, const ReceivedEvents& events,
-                        const ReceivedReplies& replies, const MirrorFigures& figures,
-                        std::uint32_t scene, std::int64_t now_nsec);
+std::string status_text(const std::vector<ReportedNode>& nodes,
+                        const std::vector<msg::DeviceDescription>& devices,
+                        const ReceivedEvents& events, const ReceivedReplies& replies,
+                        const MirrorFigures& figures, std::uint32_t scene, std::int64_t now_nsec);
 
 /// A page's word that it is done with all frames up to `sequence`; `drawn` when it has drawn that
 /// one.

@@ -64,6 +64,8 @@ std::string fault_of(const msg::SceneDescription& description) {
     return count_fault("too many signals", description.signals().size(), kMaxSignals);
   if (description.mat_radius_m().size() != mats)
     return count_fault("radii in the description", description.mat_radius_m().size(), mats);
+  if (description.mat_mass_kg().size() != mats)
+    return count_fault("masses in the description", description.mat_mass_kg().size(), mats);
   if (description.space() < 1 || description.space() > 3)
     return "a space of " + std::to_string(description.space()) + " dimensions";
   if (ends % 2 != 0) return "an odd number of link ends in the description";
@@ -73,6 +75,10 @@ std::string fault_of(const msg::SceneDescription& description) {
     return "a port of the description is at a MAT that does not exist";
   if (!ranges_fit(description.matter(), mats) || !ranges_fit(description.links(), ends / 2))
     return "a name of the description reaches past the last MAT or link";
+  if (!std::ranges::all_of(description.colours(), [mats](const msg::ColouredRange& range) {
+        return std::size_t{range.first()} + range.count() <= mats;
+      }))
+    return "a colour of the description reaches past the last MAT";
   if (!description.link_state_machine().empty() &&
       description.link_state_machine().size() != ends / 2)
     return count_fault("state machines of links in the description",

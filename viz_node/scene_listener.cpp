@@ -94,7 +94,8 @@ struct SceneListener::Impl {
         events(participant, dds::Topic::kEvents),
         status(participant, dds::Topic::kStatus),
         reply(participant, dds::Topic::kReply),
-        pointer(participant, dds::Topic::kPointerState) {}
+        pointer(participant, dds::Topic::kPointerState),
+        device(participant, dds::Topic::kDevice) {}
 
   Follower<msg::SceneDescription> description;
   Follower<msg::SceneFrame> frame;
@@ -104,6 +105,7 @@ struct SceneListener::Impl {
   Follower<msg::NodeStatus> status;
   Follower<msg::ControlReply> reply;
   Follower<msg::PointerState> pointer;
+  Follower<msg::DeviceDescription> device;
 };
 
 SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
@@ -136,6 +138,10 @@ SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
   });
   impl_->pointer.follow([&pointers](msg::PointerState&& message) {
     pointers.take(message, node::monotonic_nsec());
+    return std::string();
+  });
+  impl_->device.follow([&mirror](msg::DeviceDescription&& message) {
+    mirror.take(std::move(message));
     return std::string();
   });
 }

@@ -193,6 +193,13 @@ void SceneMirror::take(msg::NodeStatus&& status, std::int64_t now_nsec) {
   nodes_[node_id] = {std::move(status), now_nsec};
 }
 
+void SceneMirror::take(msg::DeviceDescription&& device) {
+  const std::lock_guard lock(mutex_);
+  const std::uint32_t device_id = device.device_id();
+  if (devices_.size() >= kMaxNodes && !devices_.contains(device_id)) return;
+  devices_[device_id] = std::move(device);
+}
+
 void SceneMirror::take(msg::ControlReply&& reply) {
   const std::lock_guard lock(mutex_);
   replies_.push_back(std::move(reply));
@@ -230,6 +237,7 @@ std::uint64_t SceneMirror::newest_sound() const {
 
 std::string SceneMirror::status(std::int64_t now_nsec) const {
   std::vector<ReportedNode> nodes;
+  std::vector<msg::DeviceDescription> devices;
   ReceivedEvents events;
   ReceivedReplies replies;
   MirrorFigures figures;
@@ -237,12 +245,13 @@ std::string SceneMirror::status(std::int64_t now_nsec) const {
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, node] : nodes_) nodes.push_back(node);
+    for (const auto& [id, device] : devices_) devices.push_back(device);
     events = events_;
     replies = replies_;
     figures = figures_;
     if (scene_ != nullptr) scene = scene_->scene;
   }
-  return status_text(nodes, events, replies, figures, scene, now_nsec);
+  return status_text(nodes, devices, events, replies, figures, scene, now_nsec);
 }
 
 MirrorFigures SceneMirror::figures() const {

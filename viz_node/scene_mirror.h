@@ -44,7 +44,8 @@ struct ShownSound {
 };
 
 /// The newest of everything that sim_node and the other nodes said. Its memory is bounded: one
-/// scene, one frame, the last batches of signals, half a second of sound, 64 nodes. Any thread may call it; what it hands
+/// scene, one frame, the last batches of signals, half a second of sound, 64 nodes and
+/// devices. Any thread may call it; what it hands
 /// out never changes and is shared, not copied.
 ///
 /// take() gives back what is wrong with a message that was refused, else an empty string. Refused
@@ -66,6 +67,7 @@ class SceneMirror {
   std::string take(msg::SceneEvents&& events);
   void take(msg::NodeStatus&& status, std::int64_t now_nsec);
   void take(msg::ControlReply&& reply);
+  void take(msg::DeviceDescription&& device);
 
   std::shared_ptr<const ShownScene> scene() const;  ///< nullptr before the first description
   std::shared_ptr<const ShownFrame> frame()
@@ -103,7 +105,8 @@ class SceneMirror {
   std::size_t signals_bytes_ = 0;
   std::deque<std::shared_ptr<const ShownSound>> sound_;
   std::atomic<int> listeners_{0};
-  std::map<std::uint32_t, ReportedNode> nodes_;  // by node_id
+  std::map<std::uint32_t, ReportedNode> nodes_;              // by node_id
+  std::map<std::uint32_t, msg::DeviceDescription> devices_;  // by device_id
   ReceivedEvents events_;
   ReceivedReplies replies_;
   MirrorFigures figures_;

@@ -20,7 +20,7 @@ Value value_at(const Bytes& bytes, std::size_t offset) {
 template <class Bytes>
 void expect_prefix(const Bytes& bytes, MessageType type, std::size_t header_bytes) {
   EXPECT_EQ(std::memcmp(bytes.data(), "CDS1", 4), 0);
-  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 2);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 3);
   EXPECT_EQ(value_at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
   EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), header_bytes);
 }
@@ -75,18 +75,20 @@ TEST(FrameEncoder, PutsTheMeanStrideOfRowsThatAreNotEvenlyApart) {
   EXPECT_EQ(value_at<double>(encode_signals(signals, 7, 44'100.0), 40), 0.001);
 }
 
-TEST(FrameEncoder, PutsRadiiEndsAndKindsIntoTheTopology) {
+TEST(FrameEncoder, PutsRadiiMassesEndsAndKindsIntoTheTopology) {
   const std::string bytes = encode_topology(row_of_three(), 9);
 
   expect_prefix(bytes, MessageType::kTopology, 24);
-  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 4 * 4 + 3);
+  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 3 * 4 + 4 * 4 + 3);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 9u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 3u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 16), 2u);
   EXPECT_EQ(value_at<float>(bytes, 24 + 4), 0.25F);
-  EXPECT_EQ(value_at<std::uint32_t>(bytes, 36 + 12), 2u);
+  EXPECT_EQ(value_at<float>(bytes, 36), 0.0F);
+  EXPECT_EQ(value_at<float>(bytes, 36 + 4), 0.5F);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 48 + 12), 2u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 20), 0u);
-  EXPECT_EQ(value_at<std::uint8_t>(bytes, 52 + 2), 2);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 64 + 2), 2);
 }
 
 TEST(FrameEncoder, PutsTheStateMachineOfEachLinkIntoTheTopology) {
@@ -94,11 +96,11 @@ TEST(FrameEncoder, PutsTheStateMachineOfEachLinkIntoTheTopology) {
   description.link_state_machine({1, msg::NO_INDEX});
   const std::string bytes = encode_topology(description, 9);
 
-  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 4 * 4 + 2 * 2 + 3);
+  ASSERT_EQ(bytes.size(), 24u + 3 * 4 + 3 * 4 + 4 * 4 + 2 * 2 + 3);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 20), 2u);
-  EXPECT_EQ(value_at<std::uint16_t>(bytes, 52), 1u);
-  EXPECT_EQ(value_at<std::uint16_t>(bytes, 54), kNoStateMachine);
-  EXPECT_EQ(value_at<std::uint8_t>(bytes, 56 + 2), 2);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 64), 1u);
+  EXPECT_EQ(value_at<std::uint16_t>(bytes, 66), kNoStateMachine);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 68 + 2), 2);
 }
 
 TEST(FrameEncoder, PutsSoundStepAfterStepWithItsRate) {

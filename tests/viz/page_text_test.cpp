@@ -27,7 +27,7 @@ ReportedNode node_in(msg::NodePhase phase, std::int64_t seconds_ago) {
 }
 
 std::string state_of(const ReportedNode& node) {
-  return Json::parse(status_text({node}, {}, {}, {}, 0, kNow))["nodes"][0]["state"];
+  return Json::parse(status_text({node}, {}, {}, {}, {}, 0, kNow))["nodes"][0]["state"];
 }
 
 TEST(PageText, CallsANodeLostThatIsNoLongerHeardUnlessItSaidThatItStops) {
@@ -43,7 +43,7 @@ TEST(PageText, SurvivesTextsThatAreNoUtf8AndNumbersThatAreNone) {
   node.status.node("a\xff\"b" + std::string(10'000, 'x'));
   node.status.energy_j(std::numeric_limits<double>::quiet_NaN());
 
-  const Json json = Json::parse(status_text({node}, {}, {}, {}, 0, kNow));
+  const Json json = Json::parse(status_text({node}, {}, {}, {}, {}, 0, kNow));
 
   EXPECT_TRUE(json["nodes"][0]["energy_j"].is_null());
   EXPECT_LT(json["nodes"][0]["name"].get<std::string>().size(), 400u);
@@ -73,6 +73,46 @@ TEST(PageText, DescribesSurfacesByTheirKinds) {
     {"name": "floor", "kind": "plane", "centre": [0, -1, 0], "axis": [0, 1, 0], "size": []},
     {"name": "step", "kind": "box", "centre": [1, 2, 3], "axis": [], "size": [0.5, 0.25, 0]},
     {"name": "post", "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
+}
+
+TEST(PageText, DescribesColoursAndWherePortsAre) {
+  msg::SceneDescription description = row_of_three();
+  EXPECT_EQ(Json::parse(description_text(description, 1))["colours"], Json::array());
+
+  msg::ColouredRange range;
+  range.first(1);
+  range.count(2);
+  range.red(255);
+  range.green(136);
+  description.colours({range});
+  msg::PortDescription port;
+  port.axes({3});
+  description.ports({port, port});
+  msg::PortFrame frame;
+  frame.rest_m({0.5, 0.25, 0.0});
+  frame.direction({0.0, 1.0, 0.0});
+  description.port_frames({frame});
+  const Json json = Json::parse(description_text(description, 1));
+  EXPECT_EQ(json["colours"], Json::parse(R"([{"first": 1, "count": 2, "colour": "#ff8800"}])"));
+  EXPECT_EQ(json["ports"][0]["rest"], Json::parse("[0.5, 0.25, 0]"));
+  EXPECT_EQ(json["ports"][0]["direction"], Json::parse("[0, 1, 0]"));
+  EXPECT_EQ(json["ports"][1]["rest"], Json::array()) << "a description may lack frames";
+}
+
+TEST(PageText, ReportsDevicesAsTheySayTheyAre) {
+  msg::DeviceDescription keyboard;
+  keyboard.device("keyboard");
+  keyboard.coordinate_count(2);
+  keyboard.key_pitch_m(0.01375);
+  keyboard.lowest_m(-0.01);
+  keyboard.travel_m()[1] = 0.02;
+  EXPECT_EQ(Json::parse(status_text({}, {keyboard}, {}, {}, {}, 1, kNow))["devices"],
+            Json::parse(R"([{"name": "keyboard", "key_pitch_m": 0.01375, "lowest_m": -0.01,
+                             "travel_m": [0, 0.02]}])"));
+  keyboard.coordinate_count(1000);  // of another process
+  EXPECT_EQ(Json::parse(status_text({}, {keyboard}, {}, {}, {}, 1, kNow))["devices"][0]["travel_m"]
+                .size(),
+            msg::MAX_AXES);
 }
 
 TEST(PageText, ReadsAnAcknowledgement) {
@@ -122,7 +162,7 @@ TEST(PageText, ReportsEventsWithNamesOfStatesAndCounts) {
   node.status.changes().push_back(counted);
   node.status.lost_events(3);
 
-  const Json json = Json::parse(status_text({node}, events, {}, {}, 1, kNow));
+  const Json json = Json::parse(status_text({node}, {}, events, {}, {}, 1, kNow));
 
   EXPECT_EQ(json["events"]["newest"][0],
             Json::parse(R"({"step": 120, "link": 1, "mat_a": 0, "mat_b": 2, "state_machine": 0,
@@ -137,7 +177,7 @@ TEST(PageText, ReportsRepliesToThePages) {
   reply.node("sim");
   reply.accepted(true);
   reply.text("paused at step 8");
-  const Json json = Json::parse(status_text({}, {}, {reply}, {}, 1, kNow));
+  const Json json = Json::parse(status_text({}, {}, {}, {reply}, {}, 1, kNow));
   EXPECT_EQ(json["replies"],
             Json::parse(
                 R"([{"number": 4, "node": "sim", "accepted": true, "text": "paused at step 8"}])"));

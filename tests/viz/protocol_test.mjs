@@ -62,7 +62,7 @@ class Client {
   take(data, isBinary) {
     if (!isBinary) return void this.texts.push(JSON.parse(data.toString()));
     assert.equal(data.toString('latin1', 0, 4), MAGIC);
-    assert.equal(data[4], 2);
+    assert.equal(data[4], 3);
     const header = data.readUInt16LE(6);
     if (data[5] === FRAME) this.takeFrame(data, header);
     else if (data[5] === SIGNALS) this.takeSignals(data, header);
@@ -108,10 +108,11 @@ class Client {
     const [mats, links] = [data.readUInt32LE(12), data.readUInt32LE(16)];
     assert.equal(header, 24);
     const machines = data.readUInt32LE(20);
-    assert.equal(data.length, header + 5 * mats + 8 * links + 2 * machines);
-    const kinds = [...data.subarray(header + 4 * mats + 8 * links + 2 * machines)];
-    const ends = Array.from({ length: 2 * links }, (_, i) => data.readUInt32LE(header + 4 * mats + 4 * i));
-    this.topologies.push({ scene: data.readUInt32LE(8), mats, links, kinds, ends });
+    assert.equal(data.length, header + 9 * mats + 8 * links + 2 * machines);
+    const kinds = [...data.subarray(header + 8 * mats + 8 * links + 2 * machines)];
+    const masses = Array.from({ length: mats }, (_, i) => data.readFloatLE(header + 4 * mats + 4 * i));
+    const ends = Array.from({ length: 2 * links }, (_, i) => data.readUInt32LE(header + 8 * mats + 4 * i));
+    this.topologies.push({ scene: data.readUInt32LE(8), mats, links, kinds, masses, ends });
   }
 
   acknowledge(sequence, drawn = true) {
@@ -249,6 +250,8 @@ const cases = {
       const topology = client.topologies[0];
       assert.equal(topology.links, MATS - 1);
       assert.deepEqual(topology.ends.slice(0, 4), [0, 1, 1, 2]);
+      assert.deepEqual([topology.masses[0], topology.masses[1], topology.masses[12]], [0, Math.fround(0.001), 0]);
+      assert.deepEqual(description.colours, []);
       assert.deepEqual([topology.kinds[0], topology.kinds[1], topology.kinds[12]], [1, 0, 2]);
       checkFrames(client.frames, description.scene);
       checkSignals(client.signals);

@@ -47,6 +47,13 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
          d.links()[0].first(0xffffffff);
          d.links()[0].count(2);  // would wrap round in 32 bits
        }},
+      {"colour",
+       [](auto& d) {
+         d.colours().resize(1);
+         d.colours()[0].first(0xffffffff);
+         d.colours()[0].count(2);  // would wrap round in 32 bits
+       }},
+      {"masses", [](auto& d) { d.mat_mass_kg().pop_back(); }},
       {"rate", [](auto& d) { d.step_rate_hz(0.0); }},
       {"rate", [](auto& d) { d.frame_rate_hz(std::numeric_limits<double>::infinity()); }},
       {"too many signals", [](auto& d) { d.signals().resize(kMaxSignals + 1); }},

@@ -48,6 +48,28 @@ TEST_F(SceneMirrorTest, HandsOutTheNewestFrameWithItsPositionsAsTheyCame) {
   EXPECT_EQ(frame->frame.position_m(), frame_of_three(2).position_m());
 }
 
+TEST_F(SceneMirrorTest, ReportsTheNewestWordOfEachDevice) {
+  for (const double pitch_m : {0.01, 0.02}) {
+    msg::DeviceDescription device;
+    device.device_id(7);
+    device.device("keyboard");
+    device.key_pitch_m(pitch_m);
+    mirror.take(std::move(device));
+  }
+  const Json devices = Json::parse(mirror.status(0))["devices"];
+  ASSERT_EQ(devices.size(), 1u);
+  EXPECT_EQ(devices[0]["key_pitch_m"], 0.02);
+}
+
+TEST_F(SceneMirrorTest, KeepsOnlySoManyDevices) {
+  for (std::uint32_t id = 0; id < 200; ++id) {
+    msg::DeviceDescription device;
+    device.device_id(id);
+    mirror.take(std::move(device));
+  }
+  EXPECT_EQ(Json::parse(mirror.status(0))["devices"].size(), 64u);
+}
+
 TEST_F(SceneMirrorTest, KeepsWhatItHandedOutUnchanged) {
   take_frame(1);
   const auto first = mirror.frame();
@@ -150,6 +172,7 @@ TEST_F(SceneMirrorTest, PassesOverWhatBelongsToTheSceneBeforeOrAfter) {
   next.version(2);
   next.mat_kind().pop_back();
   next.mat_radius_m().pop_back();
+  next.mat_mass_kg().pop_back();
   next.link_ends({0, 1});
   take_frame(1);
   msg::SceneFrame early = frame_of_three(2);

@@ -3,6 +3,7 @@
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
 //                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--bad-frames]
+//                     [--colours] [--keyboard]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <algorithm>
 #include <atomic>
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "idl/gesture.h"
 #include "idl/scene.h"
 #include "node/config/name_hash.h"
 #include "node/dds/participant.h"
@@ -49,6 +51,8 @@ struct Options {
   bool states = false;
   bool liaisons = false;  // two with states, and links without
   bool surfaces = false;
+  bool colours = false;   // of the scene's own, for three bodies
+  bool keyboard = false;  // the device is one of four keys
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -81,6 +85,10 @@ Options read_options(int argc, char** argv) {
       options.liaisons = true;
     } else if (word == "--surfaces") {
       options.surfaces = true;
+    } else if (word == "--colours") {
+      options.colours = true;
+    } else if (word == "--keyboard") {
+      options.keyboard = true;
     } else if (word == "--bad-frames") {
       options.bad_frames = true;
     } else if (word == "--hold-domain") {
@@ -231,6 +239,51 @@ void name_parts(MovingScene& scene, const std::string& name, std::size_t bodies,
   description.frame_rate_hz(kFrameRateHz);
 }
 
+msg::ColouredRange coloured(std::uint32_t first, std::uint32_t count, std::uint32_t rgb) {
+  msg::ColouredRange range;
+  range.first(first);
+  range.count(count);
+  range.red(static_cast<std::uint8_t>(rgb >> 16));
+  range.green(static_cast<std::uint8_t>(rgb >> 8 & 255u));
+  range.blue(static_cast<std::uint8_t>(rgb & 255u));
+  return range;
+}
+
+/// The second half of a rope, a body and a fixed point have colours of their own.
+void give_colours(msg::SceneDescription& description) {
+  std::vector<msg::NamedRange>& matter = description.matter();
+  matter[0].name("rope.core");
+  matter[1].name("rope.skin");
+  msg::NamedRange anchor;
+  anchor.name("anchor");
+  anchor.first(matter[2].first() + matter[2].count() - 1);
+  anchor.count(1);
+  matter.push_back(anchor);
+  description.colours({coloured(matter[1].first(), matter[1].count(), 0xc81e1e),
+                       coloured(matter[2].first(), matter[2].count(), 0xf5f500),
+                       coloured(anchor.first(), 1, 0x8000ff)});
+}
+
+/// The port is the third of four keys, which go down by 1 cm.
+msg::DeviceDescription describe_keyboard(MovingScene& scene) {
+  const std::size_t first = std::size_t{3} * scene.port_mat;
+  msg::PortFrame frame;
+  for (std::size_t k = 0; k < 3; ++k) frame.rest_m().push_back(scene.rest_m[first + k]);
+  frame.direction({0.0, 1.0, 0.0});
+  scene.description.port_frames({frame});
+  scene.description.ports()[0].axes({2});
+  msg::DeviceDescription keyboard;
+  keyboard.device("keyboard");
+  keyboard.device_id(config::name_hash("keyboard"));
+  keyboard.epoch(1);
+  keyboard.coordinate_count(4);
+  keyboard.rate_hz(kStepRateHz);
+  keyboard.key_pitch_m(0.01375);
+  keyboard.lowest_m(-0.01);
+  keyboard.highest_m(0.01);
+  return keyboard;
+}
+
 /// Everything that sim_node writes but the description.
 class Publisher {
  public:
@@ -305,6 +358,12 @@ int publish(const Options& options) {
   if (options.states && options.liaisons) describe_other_liaisons(scene.description);
   if (options.surfaces) scene.description.surfaces(test::steps_and_post());
   name_parts(scene, options.scene, options.bodies, epoch);
+  if (options.colours) give_colours(scene.description);
+  dds::Writer<msg::DeviceDescription> device_writer(keyboard, dds::Topic::kDevice);
+  if (options.keyboard) {
+    msg::DeviceDescription described = describe_keyboard(scene);
+    static_cast<void>(device_writer.write(described));
+  }
   dds::Writer<msg::SceneDescription> description_writer(sim, dds::Topic::kDescription);
   static_cast<void>(description_writer.write(scene.description));
 

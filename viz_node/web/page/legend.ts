@@ -1,11 +1,11 @@
 // viz_node/web/page/legend.ts -- what each colour and mark of the view means.
 import { bodyName } from './bodies.ts';
-import { ofList, type Palette } from './colours.ts';
+import { ofList, readable, type Palette } from './colours.ts';
 import { count } from './format.ts';
 import type { Colouring } from './colouring.ts';
 import { SMALLER } from './components.ts';
 import { PATTERNS } from './link_groups.ts';
-import type { Description } from './protocol.ts';
+import type { Description, Surface } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
 
@@ -27,7 +27,11 @@ export function legendOf(description: Description, view: SceneView, colouring: C
   if (bodies.hasFixedBalls) entries.push({ mark: 'mass', text: 'fixed ball', colour: palette.fixed });
   if (bodies.hasPorts) entries.push({ mark: 'handle', text: 'handle of a device', colour: palette.port });
   if (description.tools.some((tool) => tool !== null)) entries.push({ mark: 'tool', text: 'tool that it holds', colour: palette.port });
-  if (description.surfaces.length > 0) entries.push({ mark: 'surface', text: surfaceText(description), colour: palette.surface });
+  const ofSurfaces = bodies.ofSurfaces;
+  const plain = description.surfaces.filter((_, i) => ofSurfaces[i] === null);
+  if (plain.length > 0) entries.push({ mark: 'surface', text: surfaceText(plain), colour: palette.surface });
+  for (const { mark, name, wanted } of bodies.colouredFixed.slice(0, MOST_BODIES))
+    entries.push({ mark, text: mark === 'surface' ? `surface: ${name}` : `${name}, fixed`, colour: readable(wanted, palette) });
   if (colouring === 'bodies' || colouring === 'components') entries.push(...linkEntries(view, palette.link_states));
   return entries;
 }
@@ -38,7 +42,7 @@ function massEntries(view: SceneView, colouring: Colouring, palette: Palette): L
   if (colouring === 'stretch') return [{ mark: 'mass', text: 'mass', colour: palette.quiet }];
   if (colouring === 'components') return componentEntries(view, palette);
   const { list } = view.bodies;
-  const entries = list.slice(0, MOST_BODIES).map(({ name }, number): LegendEntry => ({ mark: 'mass', text: name, colour: ofList(palette.bodies, number) }));
+  const entries = list.slice(0, MOST_BODIES).map((body): LegendEntry => ({ mark: 'mass', text: body.name, colour: view.bodies.colourOf(body, palette) }));
   if (list.length > MOST_BODIES) entries.at(-1)!.text += ` and ${list.length - MOST_BODIES} more`;
   return entries;
 }
@@ -55,7 +59,7 @@ function componentEntries({ links }: SceneView, palette: Palette): LegendEntry[]
 }
 
 /** `surface: floor, step`: the first parts of the names. */
-function surfaceText({ surfaces }: Description): string {
+function surfaceText(surfaces: Surface[]): string {
   const names = [...new Set(surfaces.map(({ name }) => bodyName(name)))].filter((name) => name !== '');
   const more = names.length > MOST_SURFACES ? ' …' : '';
   return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MOST_SURFACES).join(', ')}${more}`;

@@ -8,6 +8,7 @@ import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
 import { joined, roundLength, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
+import { KeyboardPanel } from './keyboards.ts';
 import { keysAreListed, toggleKeys } from './keys_dialog.ts';
 import { legendOf, showLegend, type LegendEntry } from './legend.ts';
 import { LinkGroups } from './link_groups.ts';
@@ -72,6 +73,7 @@ export class Page {
   readonly takeBar: TakeBar;
   readonly pointer: PointerHand;
   readonly picked: Picked;
+  readonly keyboards: KeyboardPanel;
   theme = firstTheme();
   private pending: Frame | null = null;
   private pendingIsLate = false; // it came, or waited, while the page was hidden
@@ -109,6 +111,7 @@ export class Page {
     this.takeBar = new TakeBar(this.connection);
     this.pointer = new PointerHand(this.stage, this.connection, () => this.view, () => this.askToDraw());
     this.picked = new Picked(this.stage, () => this.view, this.plots.traces, () => this.askToDraw());
+    this.keyboards = new KeyboardPanel((mat) => this.picked.pick({ mat }));
     this.applyTheme();
     window.setInterval(() => this.refresh(), FIGURES_PERIOD_MS);
   }
@@ -138,6 +141,7 @@ export class Page {
         this.clock.note(message.sent_nsec, performance.now());
         this.hud.setStatus(message);
         this.takeBar.update(message.nodes);
+        if (this.description !== null) this.keyboards.describe(this.description, message.devices);
         this.parameters.update(this.maySet && this.connection.mayCommand && this.hud.commanded?.kind === 'sim_node', message.replies);
         return this.controls.update(this.hud.commanded, message.replies);
       case 'signals':
@@ -181,6 +185,7 @@ export class Page {
     this.hud.setDescription(description);
     this.sound.describe(description);
     if (isSame) return;
+    this.keyboards.describe(description, []); // until the devices are known
     this.parameters.describe();
     this.picked.pick(null);
     this.pose = looksAlike && this.view !== null ? this.view.rig.pose : null;
@@ -241,6 +246,7 @@ export class Page {
     try {
       if (frame !== null && this.view !== null && !this.frozen) this.view.show(frame);
       this.view?.draw();
+      if (this.view !== null && this.lastFrame !== null) this.keyboards.draw(this.view);
       this.drawMarks();
     } catch (error) {
       this.note(error);

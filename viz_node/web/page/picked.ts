@@ -13,6 +13,7 @@ const NEAR_LINK_PX = 6;
 const ON_MAT_PX = 2; // so near its edge a MAT is meant, and no link
 const MOVED_PX = 4; // a click that moves farther turns the view
 const REFRESH_MS = 150;
+const FALL = 0.995; // of the full length of the arrow, per frame
 
 /** One MAT, or one link. */
 export type PickedThing = { mat: number } | { link: number };
@@ -20,12 +21,15 @@ export type PickedThing = { mat: number } | { link: number };
 export class Picked {
   thing: PickedThing | null = null;
   private follows = false;
+  private showsForce = false;
+  private largestN = 0; // force of what is picked, that the arrow is measured by; falls slowly
   private down: Point | null = null;
   private shownMs = 0;
   private readonly panel = document.querySelector<HTMLElement>('#picked')!;
   private readonly name = document.querySelector('#picked-name')!;
   private readonly values = document.querySelector('#picked-values')!;
   private readonly plotButton = document.querySelector<HTMLButtonElement>('#picked-plot')!;
+  private readonly forceButton = document.querySelector<HTMLButtonElement>('#picked-force')!;
   private readonly followButton = document.querySelector<HTMLButtonElement>('#picked-follow')!;
 
   constructor(
@@ -47,12 +51,19 @@ export class Picked {
       if (traced !== null) this.traces.toggle(traced);
     });
     this.followButton.addEventListener('click', () => this.follow(!this.follows));
+    this.forceButton.addEventListener('click', () => {
+      this.showsForce = !this.showsForce;
+      press(this.forceButton, this.showsForce);
+      this.changed();
+    });
   }
 
   pick(thing: PickedThing | null): void {
     this.thing = thing;
     this.panel.hidden = thing === null;
     this.followButton.hidden = thing === null || !('mat' in thing);
+    this.forceButton.hidden = this.followButton.hidden;
+    this.largestN = 0;
     this.shownMs = 0;
     this.follow(false);
     this.showPlotted();
@@ -75,6 +86,7 @@ export class Picked {
     if ('mat' in this.thing) {
       if (this.follows) view.rig.moveTo(view.drawnPlace(this.thing.mat));
       ring(this.thing.mat, 6);
+      if (this.showsForce) this.drawForce(view, this.thing.mat, marks, stage, palette);
     } else {
       view.endsOf(this.thing.link).forEach((mat) => ring(mat, 3));
     }
@@ -84,6 +96,20 @@ export class Picked {
     const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link);
     setText(this.name, name);
     setText(this.values, values);
+  }
+
+  /** An arrow whose full length is the largest force of late. */
+  private drawForce(view: SceneView, mat: number, marks: Marks, stage: DOMRect, palette: Palette): void {
+    const force = view.forceOn(mat);
+    if (force === null) return;
+    const size = Math.hypot(...force);
+    this.largestN = Math.max(size, FALL * this.largestN);
+    if (size === 0) return;
+    const local = ({ x, y }: Point) => ({ x: x - stage.left, y: y - stage.top });
+    const place = view.drawnPlace(mat);
+    const from = local(view.screenOf(place));
+    const tip = local(view.screenOf(place.map((x, k) => x + (force[k]! / size) * view.rig.metresPerPixel * 100)));
+    marks.arrow(from, { x: tip.x - from.x, y: tip.y - from.y }, size / this.largestN, palette.text, joined(withUnit(size, 'N')));
   }
 
   /** What a plot of it shows. */
@@ -128,8 +154,10 @@ function lengthOf(view: SceneView, link: number): number {
 function matText(view: SceneView, mat: number): [string, string] {
   const [x, y, z] = view.place(mat).map((value) => joined(withUnit(value, 'm')));
   const part = view.componentOf(mat);
+  const force = view.forceOn(mat);
+  const net = force === null ? '' : ` · net force ${joined(withUnit(Math.hypot(...force), 'N'))}, mean over two frames`;
   const component = part === null ? '' : ` · component ${part.place} by size, ${count(part.component.size)} MATs`;
-  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${component}`];
+  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${net}${component}`];
 }
 
 function linkText(view: SceneView, link: number): [string, string] {

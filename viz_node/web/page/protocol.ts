@@ -2,7 +2,7 @@
 // each field is.
 
 export const MAGIC = 0x31534443; // the bytes "CDS1"
-export const VERSION = 2;
+export const VERSION = 3;
 export const NO_STATE_MACHINE = 65535; // of a link
 
 const TYPE_FRAME = 1;
@@ -43,6 +43,7 @@ export interface Topology {
   matCount: number;
   linkCount: number;
   radii: Float32Array<ArrayBuffer>; // [m]
+  masses: Float32Array<ArrayBuffer>; // [kg]; 0 of what is fixed or moved by a device
   linkEnds: Uint32Array<ArrayBuffer>; // two per link
   stateMachines: Uint16Array<ArrayBuffer>; // per link: an index in those of the description, or NO_STATE_MACHINE; or empty
   kinds: Uint8Array<ArrayBuffer>; // MAT_*
@@ -72,6 +73,23 @@ export interface Port {
   role: 'mass' | 'liaison';
   mat: number;
   axes: number[];
+  rest: number[]; // x, y, z of its MAT when all axes are at 0 [m]
+  direction: number[]; // 3 per axis: unit vector along which the axis moves it
+}
+
+/** A device, as it says it is. */
+export interface DeviceShape {
+  name: string;
+  key_pitch_m: Figure; // of keys side by side; 0: it is no keyboard
+  lowest_m: Figure; // end of the travel of each key below its rest; 0: they differ
+  travel_m: Figure[]; // per axis, from stop to stop; 0: unknown
+}
+
+/** Consecutive MATs to which the scene gives a colour; a later range stands above an earlier one. */
+export interface ColouredRange {
+  first: number;
+  count: number;
+  colour: string; // #rrggbb
 }
 
 /** A fixed body of the scene that matter touches. */
@@ -113,6 +131,7 @@ export interface Description {
   tools: (number | null)[]; // of each port: the MAT that its coupling moves. Filled in by the page
   signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
   surfaces: Surface[];
+  colours: ColouredRange[];
 }
 
 /** The MATs that hands move by a coupling: they have the name of a port whose own MAT is the handle. */
@@ -196,6 +215,7 @@ export interface Status {
   scene: number;
   sent_nsec: number;
   nodes: NodeState[];
+  devices: DeviceShape[];
   events: { total: number; lost: number; newest: LinkEvent[] };
   replies: Reply[]; // to the commands of pages, newest last
   viz: { frames: number; refused: number; lost: number };
@@ -304,15 +324,18 @@ function decodeTopology(view: DataView<ArrayBuffer>, header: number): Topology {
   const matCount = view.getUint32(12, true);
   const linkCount = view.getUint32(16, true);
   const machineCount = view.getUint32(20, true);
-  checkLength(view, header + 5 * matCount + 8 * linkCount + 2 * machineCount);
+  checkLength(view, header + 9 * matCount + 8 * linkCount + 2 * machineCount);
+  const ends = header + 8 * matCount;
+  const machines = ends + 8 * linkCount;
   return {
     type: 'topology',
     scene: view.getUint32(8, true),
     matCount,
     linkCount,
     radii: new Float32Array(view.buffer, header, matCount),
-    linkEnds: new Uint32Array(view.buffer, header + 4 * matCount, 2 * linkCount),
-    stateMachines: new Uint16Array(view.buffer, header + 4 * matCount + 8 * linkCount, machineCount),
-    kinds: new Uint8Array(view.buffer, header + 4 * matCount + 8 * linkCount + 2 * machineCount, matCount),
+    masses: new Float32Array(view.buffer, header + 4 * matCount, matCount),
+    linkEnds: new Uint32Array(view.buffer, ends, 2 * linkCount),
+    stateMachines: new Uint16Array(view.buffer, machines, machineCount),
+    kinds: new Uint8Array(view.buffer, machines + 2 * machineCount, matCount),
   };
 }

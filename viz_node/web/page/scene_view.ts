@@ -10,6 +10,7 @@ import { Ground } from './ground.ts';
 import type { LinkGroups } from './link_groups.ts';
 import { LinkView } from './link_view.ts';
 import { matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
+import { NetForces } from './net_forces.ts';
 import type { Frame, Surface, Topology } from './protocol.ts';
 import { Trails } from './trails.ts';
 import { LINK_IS_IDLE, MAT_FIXED } from './wire.ts';
@@ -43,6 +44,7 @@ export class SceneView {
   private newest: VertexArray;
   private readonly reference: VertexArray; // places from which motion and stretch are counted
   private readonly trails: Trails;
+  private readonly forces: NetForces;
   private before: VertexArray;
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
@@ -85,9 +87,10 @@ export class SceneView {
     this.matter = this.matterShape();
     const vertices = { position: this.newest, previous: this.before, reference: this.reference };
     this.links = topology.linkCount > 0 ? new LinkView(topology, groups, vertices, this.uniforms, palette, quality.links) : null;
-    this.surfaceView = new SurfaceView(surfaces, space);
+    this.surfaceView = new SurfaceView(surfaces, bodies.ofSurfaces, space);
     const mobile = [...topology.kinds.keys()].filter((mat) => topology.kinds[mat] !== MAT_FIXED);
     this.trails = new Trails(mobile, palette);
+    this.forces = new NetForces(topology.masses);
     this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     this.resize();
@@ -109,6 +112,7 @@ export class SceneView {
     const first = Number.isNaN(this.newestS);
     [this.newest, this.before] = [this.before, this.newest];
     this.newest.set(frame.positions);
+    this.forces.append(frame.positions, frame.simulatedS);
     if (first) {
       this.before.set(frame.positions.slice());
       this.sizePoints();
@@ -221,6 +225,11 @@ export class SceneView {
     const [now, then] = [this.newest.array, this.before.array];
     const moved = [0, 1, 2].map((k) => now[3 * mat + k]! - then[3 * mat + k]!);
     return this.shownForS > 0 ? Math.hypot(...moved) / this.shownForS : Number.NaN;
+  }
+
+  /** Net force on a MAT along x, y and z, the mean over the last two frames [N]; null where there is none to say. */
+  forceOn(mat: number): number[] | null {
+    return this.forces.of(mat);
   }
 
   toggleGround(): void {

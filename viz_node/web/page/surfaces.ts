@@ -1,11 +1,13 @@
 // viz_node/web/page/surfaces.ts -- the fixed surfaces of a scene in the view: matte faces that are
 // seen from outside, and their edges.
 import type { Box3, Vector3 } from 'three';
-import { sharesOf, type Palette } from './colours.ts';
+import { mixed, readable, sharesOf, type Palette } from './colours.ts';
 import { shapeOf, VertexArray } from './gl_canvas.ts';
 import { COLOURED } from './ground.ts';
 import type { Surface } from './protocol.ts';
 import { lightOnSurface, shapesOf } from './surface_shape.ts';
+
+const EDGE_SHARE = 0.35; // of the colour of texts in the edge of a coloured surface
 
 /** Places and colours of vertices. */
 class ColouredVertices {
@@ -27,6 +29,7 @@ export class SurfaceView {
 
   constructor(
     private readonly surfaces: Surface[],
+    private readonly given: (string | null)[], // colours of the scene
     private readonly space: number,
   ) {}
 
@@ -35,19 +38,25 @@ export class SurfaceView {
     return this.surfaces.some(({ kind }) => kind === 'plane');
   }
 
+  private coloursOf(wanted: string | null, palette: Palette): { face: string; edge: string } {
+    if (wanted === null) return { face: palette.surface, edge: palette.surface_edge };
+    const face = readable(wanted, palette);
+    return { face, edge: mixed(face, palette.text, EDGE_SHARE) };
+  }
+
   /** Lays all of them around a scene in `home`. */
   lay(home: Box3, palette: Palette): void {
     const shapes = shapesOf(this.surfaces, home, this.space);
-    const faces = shapes.flatMap((shape) => shape.faces);
-    const colour = sharesOf(palette.surface);
-    const triangles = faces.flatMap(({ corners, normal }) => {
-      const tint = colour.map((share) => share * lightOnSurface(normal));
-      return corners.slice(2).map((corner, i) => ({ places: [corners[0]!, corners[i + 1]!, corner], tint }));
-    });
+    const colours = this.given.map((wanted) => this.coloursOf(wanted, palette));
+    const triangles = shapes.flatMap(({ faces }, number) =>
+      faces.flatMap(({ corners, normal }) => {
+        const tint = sharesOf(colours[number]!.face).map((share) => share * lightOnSurface(normal));
+        return corners.slice(2).map((corner, i) => ({ places: [corners[0]!, corners[i + 1]!, corner], tint }));
+      }),
+    );
     this.corners.set(triangles.flatMap(({ places }) => places), triangles.flatMap(({ tint }) => [tint, tint, tint]));
     const ends = shapes.flatMap(({ edges }) => edges.flat());
-    const edgeColour = sharesOf(palette.surface_edge);
-    this.ends.set(ends, ends.map(() => edgeColour));
+    this.ends.set(ends, shapes.flatMap(({ edges }, number) => edges.flat().map(() => sharesOf(colours[number]!.edge))));
     this.faces.parts = [{ first: 0, count: 3 * triangles.length, uniforms: {} }];
     this.edges.parts = [{ first: 0, count: ends.length, uniforms: {} }];
   }

@@ -27,6 +27,8 @@ export interface Viz {
   signal(name: string): number | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
   position(index: number): number[] | null;
+  /** Net force on MAT `index` along x, y and z, the mean over two frames [N]; null where there is none to say. */
+  force(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } | null;
   /** Where a place of the scene [m] is on the page [CSS pixels]. */
@@ -115,6 +117,7 @@ export function exposeViz(page: Page): void {
       return value === undefined || Number.isNaN(value) ? null : value;
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
+    force: (index) => page.view?.forceOn(index) ?? null,
     project: (index) => page.view?.project(index) ?? null,
     screenOf: (place) => page.view?.screenOf(place) ?? null,
     soundSpectrum: () => page.sound.spectrum(),

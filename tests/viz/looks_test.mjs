@@ -1,0 +1,164 @@
+// tests/viz/looks_test.mjs -- what scene and device say of how they look, and the force on what is
+// picked, on the page. Real viz_node and headless Chromium.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { drawn, look, openScenePage, textOf, viz } from './browser.mjs';
+import { out, runCases, source, until } from './session.mjs';
+
+const [CORE, SKIN, BOB, ANCHOR, PORT] = [10, 30, 45, 59, 12]; // MATs
+const MASS_KG = 0.001;
+const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
+
+const bytesOf = (hex) => [1, 3, 5].map((begin) => Number.parseInt(hex.slice(begin, begin + 2), 16));
+const legendOf = (page) =>
+  page.locator('#legend li').evaluateAll((items) => items.map((item) => [item.className, item.textContent, item.style.getPropertyValue('--colour')]));
+
+/** Shading makes a colour darker and leaves its hue. */
+function assertHue(colour, hex, what) {
+  const wanted = bytesOf(hex);
+  const share = Math.max(...colour) / Math.max(...wanted);
+  const away = Math.max(...wanted.map((byte, k) => Math.abs(byte * share - colour[k])));
+  assert.ok(share > 0.4 && away < 55, `${what} is ${colour}, a shade of ${wanted}`);
+}
+
+/** How many pixels of the sheet of marks are inked. Runs in the page. */
+function inkOfMarks() {
+  const sheet = document.querySelector('#marks');
+  const { data } = sheet.getContext('2d').getImageData(0, 0, sheet.width, sheet.height);
+  return data.filter((_, i) => i % 4 === 3).filter((alpha) => alpha > 0).length;
+}
+
+async function pickCore(page) {
+  await until('a MAT is picked', async () => {
+    const { x, y } = await page.evaluate((mat) => window.viz.project(mat), CORE);
+    await page.mouse.click(x, y);
+    return (await page.locator('#picked').isVisible()) && /^rope\.core\[10\]$/.test(await textOf(page, '#picked-name'));
+  });
+}
+
+const cases = {
+  'matter has the colours of the scene, and the legend names them': async ({ page }) => {
+    await drawn(page, 2);
+    const masses = (await legendOf(page)).filter(([mark]) => mark === 'mass');
+    assert.deepEqual(masses, [
+      ['mass', 'rope.core', palettes.dark.bodies[0]],
+      ['mass', 'rope.skin', '#c81e1e'],
+      ['mass', 'string3', '#f5f500'],
+    ]);
+    const anchor = (await legendOf(page)).find(([, text]) => text === 'anchor, fixed');
+    assert.equal(anchor[0], 'fixed-point');
+    assertHue((await look(page, CORE)).colour, palettes.dark.bodies[0], 'matter without a colour of its own');
+    assertHue((await look(page, SKIN)).colour, '#c81e1e', 'a part of a body');
+    assertHue((await look(page, BOB)).colour, '#f5f500', 'a body');
+    await page.screenshot({ path: join(out, 'looks_dark.png') });
+  },
+
+  'a colour that a theme hides is darker there, in the view as in the legend': async ({ page }) => {
+    await page.keyboard.press('l');
+    await drawn(page, 2);
+    const [, , shown] = (await legendOf(page)).find(([, text]) => text === 'string3');
+    assert.equal(shown, '#939614', 'yellow on white');
+    assertHue((await look(page, BOB)).colour, shown, 'the body');
+    await page.screenshot({ path: join(out, 'looks_light.png') });
+    await page.keyboard.press('l');
+  },
+
+  'a person may still ask for other colours': async ({ page }) => {
+    await page.selectOption('#colouring', 'stretch');
+    await drawn(page, 2);
+    assertHue((await look(page, BOB)).colour, palettes.dark.quiet, 'the body');
+    assert.equal((await legendOf(page)).some(([mark, , colour]) => mark === 'mass' && colour === '#f5f500'), false);
+    await page.selectOption('#colouring', 'bodies');
+  },
+
+  'a MAT that is picked says its net force, and shows it as an arrow on demand': async ({ page }) => {
+    await pickCore(page);
+    await until('its force is said', async () => /net force [\d.]+\s?(mN|µN|nN), mean over two frames$/.test(await textOf(page, '#picked-values')));
+    // The scene moves by formula: no acceleration is beyond that of its two modes.
+    const modes = [[0.9, 1], [1.7, 0.4]];
+    const largest = MASS_KG * 0.03 * modes.reduce((sum, [hz, share]) => sum + share * (2 * Math.PI * hz) ** 2, 0);
+    for (let i = 0; i < 10; ++i) {
+      const force = await page.evaluate((mat) => window.viz.force(mat), CORE);
+      assert.ok(Math.abs(force[1]) <= 1.01 * largest, `${force[1]} N, at most ${largest} N`);
+      assert.ok(Math.abs(force[0]) < 1e-4 * largest + 1e-6 && Math.abs(force[2]) < 1e-4 * largest + 1e-6, 'it moves along y');
+      await drawn(page, 1);
+    }
+    assert.equal(await page.evaluate((mat) => window.viz.force(mat), PORT), null, 'a device moves it');
+    await page.keyboard.press('h');
+    const without = await page.evaluate(inkOfMarks);
+    assert.equal(await page.locator('#picked-force').getAttribute('aria-pressed'), 'false');
+    await page.click('#picked-force');
+    assert.equal(await page.locator('#picked-force').getAttribute('aria-pressed'), 'true');
+    await until('the arrow is there', async () => (await page.evaluate(inkOfMarks)) > without + 60);
+    await page.screenshot({ path: join(out, 'looks_force.png') });
+    await page.click('#picked-force');
+    await until('the arrow is gone', async () => (await page.evaluate(inkOfMarks)) === without);
+    await page.keyboard.press('h');
+    await page.click('#picked-close');
+  },
+
+  'a link that is picked has no such button': async ({ page }) => {
+    await pickCore(page);
+    assert.equal(await page.locator('#picked-force').isVisible(), true);
+    await until('a link is picked', async () => {
+      const { x, y } = await page.evaluate((mat) => {
+        const [a, b] = [window.viz.project(mat), window.viz.project(mat + 1)];
+        return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
+      }, CORE + 5);
+      await page.mouse.click(x, y);
+      return /^joints/.test(await textOf(page, '#picked-name'));
+    });
+    assert.equal(await page.locator('#picked-force').isVisible(), false);
+    await page.click('#picked-close');
+  },
+
+  'a keyboard is drawn with its keys and their pitch': async ({ page }) => {
+    await until('the keyboard is there', () => page.locator('#keyboards').isVisible());
+    assert.match(await textOf(page, '#keyboards figcaption'), /^keyboard: 4 keys of 13\.75\s?mm, 55\s?mm side by side$/);
+    const keys = page.locator('#keyboards button');
+    assert.deepEqual(await keys.allTextContents(), ['0', '1', '2', '3']);
+    assert.deepEqual(await keys.evaluateAll((all) => all.map(({ disabled }) => disabled)), [true, true, false, true], 'one plays a port');
+  },
+
+  'a key is as deep as its port, and one that is pressed says so': async ({ page }) => {
+    const seen = () =>
+      page.evaluate((mat) => {
+        const key = document.querySelectorAll('#keyboards button')[2];
+        return [window.viz.position(mat)[1], Number(key.style.getPropertyValue('--depth')), key.classList.contains('pressed'), key.ariaLabel];
+      }, PORT);
+    for (const wanted of [true, false, true]) {
+      const [y, depth, , label] = await until(`it is ${wanted ? 'pressed' : 'up'}`, async () => {
+        const all = await seen();
+        return all[2] === wanted && all;
+      });
+      assert.ok(Math.abs(depth - Math.min(1, Math.max(0, -y / 0.01))) < 0.011, `${depth} deep at ${y} m`);
+      assert.equal(label, `key 2, port finger: ${wanted ? 'pressed' : 'up'}`);
+      if (wanted) await page.screenshot({ path: join(out, 'looks_keyboard.png') });
+    }
+  },
+
+  'a click on a key picks its port': async ({ page }) => {
+    await page.click('#keyboards button >> nth=2');
+    assert.equal(await textOf(page, '#picked-name'), 'finger');
+    await page.click('#picked-close');
+  },
+
+  'all of it has room on a telephone': async ({ page }) => {
+    await page.setViewportSize({ width: 390, height: 800 });
+    await drawn(page, 2);
+    const inside = await page.locator('#keyboards button').evaluateAll((keys) => keys.every((key) => key.getBoundingClientRect().right <= window.innerWidth));
+    assert.ok(inside, 'every key');
+    await page.screenshot({ path: join(out, 'looks_narrow.png') });
+    await page.setViewportSize({ width: 1400, height: 900 });
+    await drawn(page, 2);
+    await page.screenshot({ path: join(out, 'looks_wide.png') });
+  },
+
+  'the page has no error': async ({ page, pageErrors }) => {
+    assert.deepEqual(await viz(page, 'errors'), []);
+    assert.deepEqual(pageErrors, []);
+  },
+};
+
+await runCases(cases, () => openScenePage('--scene', 'string', '--bodies', '3', '--colours', '--keyboard'));

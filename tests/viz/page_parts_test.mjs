@@ -1,0 +1,116 @@
+// tests/viz/page_parts_test.mjs -- parts of the page without a browser: forces from motion, colours
+// against both backgrounds, keys of a keyboard. Random inputs.
+import assert from 'node:assert/strict';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { lot, need, runCases, source, web } from './session.mjs';
+
+const RUNS = 300;
+const LEAST_CONTRAST = 3; // WCAG 2.1, 1.4.11
+const ROUNDING = 2 ** -23; // of a float32
+
+/** The modules as a browser gets them. */
+async function modules() {
+  const { build } = need('esbuild');
+  const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
+  const names = ['net_forces', 'colours', 'keyboards'];
+  await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
+  const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
+  rmSync(folder, { recursive: true });
+  return Object.assign({}, ...loaded);
+}
+const { NetForces, contrast, readable, keyboardsOf, depthOf } = await modules();
+const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
+
+/** Two times of a frame to the next, as frames come, with some left out. */
+const someSteps = (random) => [0.04 * Math.ceil(3 * random()), 0.04 * Math.ceil(3 * random())];
+
+const cases = {
+  'the net force on a mass under a constant force is that force, however far apart the frames are': () => {
+    const random = lot(1);
+    for (let run = 0; run < RUNS; ++run) {
+      const mass = Math.fround(0.001 + random());
+      const acceleration = [0, 1, 2].map(() => 20 * (random() - 0.5));
+      const velocity = [0, 1, 2].map(() => random() - 0.5);
+      const [h1, h2] = someSteps(random);
+      const forces = new NetForces(Float32Array.of(0, mass));
+      const placesAt = (t) => Float32Array.from([0, 0, 0, ...velocity.map((v, k) => v * t + (acceleration[k] * t * t) / 2)]);
+      [0, h1, h1 + h2].forEach((t) => forces.append(placesAt(t), t));
+      const farthest = Math.max(...[0, h1, h1 + h2].flatMap((t) => [...placesAt(t)].map(Math.abs)));
+      forces.of(1).forEach((force, k) => {
+        const room = (8 * mass * farthest * ROUNDING) / Math.min(h1, h2) ** 2;
+        assert.ok(Math.abs(force - mass * acceleration[k]) <= room, `run ${run}: ${force} N, wanted ${mass * acceleration[k]}`);
+      });
+      assert.equal(forces.of(0), null, 'what has no mass has no net force');
+    }
+  },
+
+  'of a vibration it is the mean that a triangle weighs': () => {
+    const random = lot(2);
+    for (let run = 0; run < RUNS; ++run) {
+      const pulsation = 0.5 + 30 * random();
+      const phase = 6 * random();
+      const h = 0.04;
+      const forces = new NetForces(Float32Array.of(1));
+      [0, h, 2 * h].forEach((t) => forces.append(Float32Array.of(0, Math.cos(pulsation * t + phase), 0), t));
+      // The integral of -w^2 cos(w t + p) times the triangle over 0..2h: -w^2 cos(w h + p) sinc(w h / 2)^2.
+      const sinc = Math.sin((pulsation * h) / 2) / ((pulsation * h) / 2);
+      const wanted = -(pulsation ** 2) * Math.cos(pulsation * h + phase) * sinc ** 2;
+      assert.ok(Math.abs(forces.of(0)[1] - wanted) < (8 * ROUNDING) / h ** 2, `run ${run}: ${forces.of(0)[1]} N, wanted ${wanted}`);
+    }
+  },
+
+  'nothing is said of a force before the third frame, nor across a jump back': () => {
+    const forces = new NetForces(Float32Array.of(1));
+    const frame = Float32Array.of(0, 0, 0);
+    for (const [timeS, isKnown] of [[1, false], [1.04, false], [1.08, true], [0.2, false], [0.24, false], [0.28, true]]) {
+      forces.append(frame, timeS);
+      assert.equal(forces.of(0) !== null, isKnown, `at ${timeS} s`);
+    }
+  },
+
+  'every colour of a scene is seen on both backgrounds, and one that is seen stays': () => {
+    const random = lot(3);
+    const anyByte = () => Math.floor(256 * random()).toString(16).padStart(2, '0');
+    const colours = ['#000000', '#ffffff', '#ffff00', '#0000ff', ...Array.from({ length: RUNS }, () => `#${anyByte()}${anyByte()}${anyByte()}`)];
+    for (const palette of [palettes.dark, palettes.light]) {
+      for (const wanted of colours) {
+        const shown = readable(wanted, palette);
+        assert.ok(contrast(shown, palette.background) >= LEAST_CONTRAST, `${wanted} is shown as ${shown}`);
+        if (contrast(wanted, palette.background) >= LEAST_CONTRAST) assert.equal(shown, wanted);
+      }
+    }
+  },
+
+  'page and renderer show the same colours': () => {
+    // tests/render/palette_test.cpp has the same table.
+    const { shown } = JSON.parse(readFileSync(join(source, 'tests/golden/readable_colours.json'), 'utf8'));
+    for (const { wanted, dark, light } of shown) {
+      assert.deepEqual([readable(wanted, palettes.dark), readable(wanted, palettes.light)], [dark, light], wanted);
+    }
+  },
+
+  'the contrast of black and white is 21': () => {
+    assert.ok(Math.abs(contrast('#000000', '#ffffff') - 21) < 1e-9);
+    assert.equal(contrast('#123456', '#123456'), 1);
+  },
+
+  'a keyboard has the keys of its device, and those that play ports are as deep as their MATs': () => {
+    const port = (name, device, axes) => ({ name, device, role: 'mass', mat: 7, axes, rest: [1, 2, 3], direction: [0, 0, 1] });
+    const ports = [port('low', 'keys', [1]), port('thimble', 'hand', [0])];
+    const devices = [
+      { name: 'keys', key_pitch_m: 0.01375, lowest_m: 0, travel_m: [0.02, 0.03, 0] },
+      { name: 'hand', key_pitch_m: 0, lowest_m: -0.1, travel_m: [0, 0, 0] },
+      { name: 'other', key_pitch_m: 0.02, lowest_m: -0.01, travel_m: [0] },
+    ];
+    const list = keyboardsOf({ ports }, devices);
+    assert.deepEqual(list.map(({ name, pitchM }) => [name, pitchM]), [['keys', 0.01375]], 'thimbles are no keys, nor is what plays nothing');
+    const [{ keys }] = list;
+    assert.deepEqual(keys.map(({ port: name, wayM }) => [name, wayM]), [['', 0.01], ['low', 0.015], ['', 0.005]]);
+    assert.ok(Math.abs(depthOf(keys[1], [9, 9, 2.99]) - 0.01) < 1e-12);
+  },
+};
+
+await runCases(cases, async () => ({ logs: () => "" }));
