@@ -52,7 +52,8 @@ void DeviceLink::listen() {
   msg::DeviceDescription description;
   while (!ending_) {
     while (device_reader_.take(description)) {
-      if (!refused_.receive(description)) continue;
+      const bool is_elsewhere = !device_reader_.is_of_this_host();
+      if (!refused_.receive(description, node::monotonic_nsec(), is_elsewhere)) continue;
       reaches_.put(description.device_id(), description.epoch(), reach_of(description));
       described_[{device_reader_.last_writer(), description.device_id()}] = description.epoch();
       keep_described();

@@ -108,7 +108,7 @@ NetworkSection read_network(const Value& value, Problems& problems) {
   network.place = value.place();
   MappingReader reader(value, "network", problems);
   const PlacedText name{reader.optional_text("interface", ""), reader.place_of("interface")};
-  if (reader.has("interface")) {
+  if (reader.has("interface") && reader.ok()) {
     if (name.text == "lo" || is_loopback(name.text)) {
       reader.error_at("interface",
                       "network.interface: " + name.text +

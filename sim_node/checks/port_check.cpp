@@ -12,7 +12,8 @@ namespace {
 
 using config::number_text;
 
-constexpr double kFingertip = 2000.0;  // stiffness of one that presses [N/m]
+constexpr double kFingertip = 2000.0;     // stiffness of one that presses [N/m]
+constexpr double kDelayAccuracy = 0.005;  // of the largest delay that is supported
 
 /// What a device supports at a port, and why.
 struct ImpedanceLimit {
@@ -168,7 +169,7 @@ std::optional<double> largest_supported_delay(const PortDemand& demand,
   double high = delay_periods;
   if (low >= high || !is_supported(low)) return {};
   if (is_supported(high)) return high;
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 10 || high - low > kDelayAccuracy * high; ++i) {
     const double middle = 0.5 * (low + high);
     (is_supported(middle) ? low : high) = middle;
   }

@@ -16,6 +16,7 @@ namespace cordis::sim {
 namespace {
 
 constexpr std::size_t kLongestDriver = 64;
+constexpr double kLongestFelt = 0.2;  // no watchdog leaves an older force on a motor [s]
 
 bool makes_sense(const msg::DeviceDescription& description) {
   const auto at_least_zero = [](double value) { return std::isfinite(value) && value >= 0.0; };
@@ -52,7 +53,8 @@ void RefusedDevices::play(const scene::Scene& scene, std::int64_t now_nsec) {
   evaluate(now_nsec);
 }
 
-bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int64_t now_nsec) {
+bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int64_t now_nsec,
+                             bool is_elsewhere) {
   if (!makes_sense(description)) return false;
   const std::lock_guard lock(mutex_);
   const auto is_same = [&description](const Known& device) {
@@ -66,7 +68,9 @@ bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int
                DelayInUse(delay_periods_),
                std::nullopt,
                std::nullopt,
-               true};
+               true,
+               is_elsewhere,
+               false};
   Row& row =
       known_.size() < kMaxKnown
           ? rows_[known_.size()]
@@ -103,6 +107,7 @@ void RefusedDevices::measure(std::int64_t now_nsec) {
     if (delays_ == nullptr) continue;
     if (is_there) delays_->add(device.epoch, device.limits.rate_hz, now_nsec);
     device.measured_s = delays_->delay_s(device.epoch, now_nsec);
+    device.was_measured = device.was_measured || device.measured_s.has_value();
     const std::optional<double> measured =
         device.measured_s ? std::optional(*device.measured_s * device.limits.rate_hz)
                           : std::nullopt;
@@ -145,7 +150,8 @@ std::string RefusedDevices::name_of(const Known& device) const {
 /// A sentence per port that the device does not support, and what it supports at all of them.
 RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
   const double periods = device.delay.periods();
-  Verdict result{periods, device.delay.is_measured(), {}, {}};
+  Verdict result{periods, device.delay.is_measured(), {}, false, {}};
+  bool is_refused = false;
   for (const PortDemand& demand : demands_) {
     if (demand.device_id != device.device_id) continue;
     const PortVerdict verdict = verdict_on(demand, device.limits, periods);
@@ -160,6 +166,11 @@ RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
             ". " + needed_answer_text(*needed, device.limits.rate_hz, device.measured_s);
       }
     }
+    is_refused = is_refused || !reasons.empty();
+    if (const auto why = wait_reason(device, demand); why && reasons.empty()) {
+      result.waits = true;
+      reasons.push_back(*why);
+    }
     for (const std::string& reason : reasons)
       result.refusal += (result.refusal.empty() ? "" : "; ") + reason;
     if (demand.role != scene::Role::kMass) continue;
@@ -168,7 +179,23 @@ RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
       result.supported_stiffness =
           std::min(*supported, result.supported_stiffness.value_or(*supported));
   }
+  result.waits = result.waits && !is_refused;
   return result;
+}
+
+/// Why a device of another host gets no force at the port before its delay is measured; empty when
+/// no delay is too long for the port.
+std::optional<std::string> RefusedDevices::wait_reason(const Known& device,
+                                                       const PortDemand& demand) const {
+  if (delays_ == nullptr || !device.is_elsewhere || device.was_measured) return {};
+  const double rate_hz = device.limits.rate_hz;
+  const double longest = kLongestFelt * rate_hz;
+  const auto needed = largest_supported_delay(demand, device.limits, longest);
+  if (!needed || *needed == longest) return {};
+  return fmt::format(
+      "port '{}' needs an answer within {:.0f} us, and the device '{}' runs on another host: no "
+      "force until {} answers are measured",
+      demand.port, std::floor(1e6 * *needed / rate_hz), demand.device, enough_answers(rate_hz));
 }
 
 /// What the devices of the scene measure and support. Of several processes of a device the one that
@@ -210,16 +237,21 @@ void RefusedDevices::evaluate(std::int64_t now_nsec) {
       device.verdict = check(device);
   }
   std::string text;
+  bool all_wait = true;
   for (std::size_t i = 0; i < known_.size(); ++i) {
     const Known& device = known_[i];
     const std::string& why = device.verdict->refusal;
     rows_[i].is_refused.store(!why.empty());
     if (why.empty() || !device.is_there) continue;
-    text += (text.empty() ? "" : "; ") + why + ": driver " + device.driver + " is given no force";
+    all_wait = all_wait && device.verdict->waits;
+    text += (text.empty() ? "" : "; ") + why;
+    if (!device.verdict->waits) text += ": driver " + device.driver + " is given no force";
   }
   std::string delay_text;
   std::vector<DeviceLoop> loops = find_loops(delay_text);
-  if (text != text_ && !text.empty() && refusals_.record(now_nsec)) spdlog::error("{}", text);
+  node::RepeatedEvent& event = all_wait ? waits_ : refusals_;
+  if (text != text_ && !text.empty() && event.record(now_nsec))
+    spdlog::log(all_wait ? spdlog::level::info : spdlog::level::err, "{}", text);
   if (text != text_ && text.empty() && returns_.record(now_nsec))
     spdlog::info("every device supports the scene again");
   const std::lock_guard lock(text_mutex_);
@@ -234,6 +266,7 @@ void RefusedDevices::report_repeats() {
   delays_grown_.report(now);
   delays_known_.report(now);
   refusals_.report(now);
+  waits_.report(now);
   returns_.report(now);
 }
 

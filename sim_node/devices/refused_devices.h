@@ -29,7 +29,9 @@ struct DeviceLoop {
 
 /// Holds every device that says what it is against the scene that is played, whichever comes first.
 /// A device that does not support it is refused: it is given no force, and its MATs hold still.
-/// A verdict follows the measured delay: see DelayInUse. A process that has sent nothing
+/// A verdict follows the measured delay: see DelayInUse. Of a device of another host nothing is
+/// assumed: where its scene is too stiff for a late answer, it gets no force until its delay is
+/// measured. A process that has sent nothing
 /// for AnswerDelays::kSilentNsec, ended or on standby, keeps its verdict and is not reported. Of
 /// more than kMaxKnown the one that has sent nothing, and was not kept, for longest is forgotten.
 ///
@@ -49,8 +51,9 @@ class RefusedDevices {
 
   /// A device reports what it is; not believed when a number in it makes no sense, or when the same
   /// process has reported something before. @return whether it is believed
+  /// @param is_elsewhere  it runs on another host
   bool receive(const msg::DeviceDescription& description,
-               std::int64_t now_nsec = node::monotonic_nsec());
+               std::int64_t now_nsec = node::monotonic_nsec(), bool is_elsewhere = false);
 
   /// The process of this epoch is alive, though it may send nothing, as on standby. In the thread of
   /// receive().
@@ -83,6 +86,7 @@ class RefusedDevices {
     double periods = 0.0;
     bool is_measured = false;
     std::string refusal;  ///< empty when it supports the scene
+    bool waits = false;   ///< refused only until its delay is measured
     std::optional<double> supported_stiffness;
   };
   struct Known {
@@ -93,7 +97,9 @@ class RefusedDevices {
     DelayInUse delay;
     std::optional<double> measured_s;
     std::optional<Verdict> verdict;
-    bool is_there = true;  ///< it has sent something lately
+    bool is_there = true;       ///< it has sent something lately
+    bool is_elsewhere = false;  ///< on another host
+    bool was_measured = false;  ///< at some time
   };
   /// What the loop knows of a device.
   struct Row {
@@ -104,6 +110,7 @@ class RefusedDevices {
   };
   void evaluate(std::int64_t now_nsec);
   Verdict check(const Known& device) const;
+  std::optional<std::string> wait_reason(const Known& device, const PortDemand& demand) const;
   std::vector<DeviceLoop> find_loops(std::string& delay_text) const;
   void report_delay(const Known& device, const DelayInUse& before, std::int64_t now_nsec);
   std::string name_of(const Known& device) const;
@@ -125,6 +132,8 @@ class RefusedDevices {
   node::RepeatedEvent delays_grown_{"answers to devices took longer again"};
   node::RepeatedEvent delays_known_{"delays of answers changed again", spdlog::level::info};
   node::RepeatedEvent refusals_{"other devices that do not support the scene", spdlog::level::err};
+  node::RepeatedEvent waits_{"devices of other hosts were measured before they got a force",
+                             spdlog::level::info};
   node::RepeatedEvent returns_{"every device supported the scene again", spdlog::level::info};
   std::array<Row, kMaxKnown> rows_;
 };

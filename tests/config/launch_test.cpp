@@ -271,6 +271,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "l.yaml:3:22: error: network.interface: '10.0.0' is neither an IPv4 address nor "
                   "the name of an interface",
                   ""},
+        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: [eth0], peers: [10.0.0.2]}\nnodes: "
+                  "{sim: {node: sim_node}}\n",
+                  "l.yaml:3:22: error: 'interface' in network must be a text, got a sequence", ""},
         BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2, 127.0.0.1]}\nnodes: {sim: "
                   "{node: sim_node}}\n",
                   "l.yaml:3:29: error: network.peers: 127.0.0.1 is the loopback interface, which "

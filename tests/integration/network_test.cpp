@@ -6,11 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -329,6 +332,140 @@ TEST_F(Network, ForcesStayWithinTheirLimitsOverASlowAndBadCable) {
   const auto first = std::find_if(rows.begin(), rows.end(), presses);
   EXPECT_GT(std::count_if(first, rows.end(), presses), (rows.end() - first) / 4)
       << "such a link is bad, and not dead";
+}
+
+constexpr double kSoftWall = 100.0;  // [N/m]: with 1 N s/m an answer may take 9.5 ms
+constexpr const char* kWeakKey =
+    "viscosity_n_s_per_m: 1\nmoving_mass_kg: 0.05\nforce_limit_n: 5\nslew_limit_n_per_s: 100\n";
+constexpr const char* kTooSlow = "It needs an answer within [0-9]+ us; its answers take [0-9]+ us";
+
+/// A key with known limits before a soft wall, and a trace of what its motor gets.
+void play_weak_key(const Apart& apart) {
+  apart.add_file("scene.yaml", wall_scene(kSoftWall));
+  apart.add_file("key.yaml", steady_key(-0.01, 0.0) + kWeakKey + "watchdog_s: 0.2\ntrace: {file: " +
+                                 (apart.folder / "trace.csv").string() + ", last_s: 120}\n");
+}
+
+bool says(StatusWatch& status, const std::string& pattern) {
+  return status.wait_for("sim", [expression = std::regex(pattern)](const msg::NodeStatus& sim) {
+    return std::regex_search(sim.text(), expression);
+  });
+}
+
+TEST_F(Network, ALinkTooSlowForTheSceneIsReportedBeforeAnyForce) {
+  Apart apart("realtime");
+  play_weak_key(apart);
+  apart.hosts.set({.delay = 10ms});
+  ChildProcess& first = apart.run(TwoHosts::kFirst, "sim");
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard");
+  const auto here = apart.observer(TwoHosts::kFirst);
+  StatusWatch status(*here);
+
+  EXPECT_TRUE(first.wait_for_output(
+      "runs on another host: no force until 1000 answers are measured", kPatience));
+  EXPECT_TRUE(says(status, kTooSlow));
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(kPatience), 0);
+
+  const std::vector<Row> rows = read_trace(apart.folder / "trace.csv");
+  ASSERT_GT(rows.size(), 1000u);
+  EXPECT_TRUE(
+      std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.commanded == 0.0; }));
+}
+
+TEST_F(Network, ALinkThatBecomesTooSlowIsReportedAndItsForceTakenAway) {
+  Apart apart("realtime");
+  play_weak_key(apart);
+  ChildProcess& first = apart.run(TwoHosts::kFirst, "sim");
+  ChildProcess& second = apart.run(TwoHosts::kSecond, "keyboard");
+  const auto here = apart.observer(TwoHosts::kSecond);
+  dds::Reader<msg::GestureForces> forces(*here, dds::Topic::kForces);
+  StatusWatch status(*here);
+  msg::GestureForces force;
+  const auto is_near = [&](double wanted_n) {
+    return eventually(
+        [&] { return forces.take(force) && std::abs(force.force_n()[0] - wanted_n) < 1e-9; });
+  };
+  ASSERT_TRUE(is_near(0.01 * kSoftWall)) << "the link is measured, and fast enough";
+
+  apart.hosts.set({.delay = 10ms});
+  EXPECT_TRUE(says(status, kTooSlow));
+  EXPECT_TRUE(is_near(0.0));
+  EXPECT_TRUE(
+      first.wait_for_output("of the answers to the device 'keyboard' take at most 2", kPatience));
+
+  apart.hosts.set({});
+  EXPECT_TRUE(is_near(0.01 * kSoftWall)) << "back by itself, after ten calm seconds";
+  second.signal(SIGINT);
+  EXPECT_EQ(second.wait(kPatience), 0);
+  expect_slew_limit(read_trace(apart.folder / "trace.csv"));
+}
+
+/// The words that deploy/cordis@.service starts for apart.yaml, of this build, with these words of /etc/cordis/apart.env.
+std::vector<std::string> words_of_the_unit(const Apart& apart, const std::string& more) {
+  std::ifstream unit(CORDIS_SOURCE_DIR "/deploy/cordis@.service");
+  std::string line;
+  while (std::getline(unit, line) && !line.starts_with("ExecStart=")) {
+  }
+  const std::vector<std::pair<std::string, std::string>> replaced{
+      {"ExecStart=", ""},
+      {"/usr/local/bin/cordis", program_path("cordis")},
+      {"/etc/cordis/%i.yaml", apart.launch_file()},
+      {"$CORDIS_WORDS", more}};
+  for (const auto& [from, to] : replaced) {
+    const std::size_t found = line.find(from);
+    EXPECT_NE(found, std::string::npos) << from << " is not in " << line;
+    if (found != std::string::npos) line.replace(found, from.size(), to);
+  }
+  std::istringstream words(line);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+/// The first child of a process; 0: it has none.
+pid_t child_of(pid_t process) {
+  const std::string number = std::to_string(process);
+  pid_t child = 0;
+  std::ifstream("/proc/" + number + "/task/" + number + "/children") >> child;
+  return child;
+}
+
+TEST_F(Network, TheUnitOfDeployPlaysWithAContainerOfAnotherHost) {
+  Apart apart("realtime");
+  const auto environment = [&](TwoHosts::Host host) {
+    return std::map<std::string, std::string>{{"CORDIS_RUNTIME_DIR", apart.runtime_folder(host)}};
+  };
+  ChildProcess too_soon(
+      apart.hosts.on(TwoHosts::kFirst,
+                     words_of_the_unit(apart, "network.interface=wire1 --only sim")),
+      environment(TwoHosts::kFirst));
+  EXPECT_NE(too_soon.wait(kPatience), 0)
+      << "systemd tries again when its interface is not there yet";
+
+  apart.processes.push_back(std::make_unique<ChildProcess>(
+      apart.hosts.on(TwoHosts::kFirst, words_of_the_unit(apart, "--only sim")),
+      environment(TwoHosts::kFirst)));
+  ChildProcess& service = *apart.processes.back();
+  // As podman runs it with the network of the host: processes have numbers of their own there.
+  std::vector<std::string> container{"unshare",      "--pid",
+                                     "--fork",       "--mount-proc",
+                                     "--kill-child", program_path("cordis"),
+                                     "run",          apart.launch_file(),
+                                     "--no-color",   "--only",
+                                     "keyboard"};
+  apart.processes.push_back(std::make_unique<ChildProcess>(
+      apart.hosts.on(TwoHosts::kSecond, container), environment(TwoHosts::kSecond)));
+  ChildProcess& contained = *apart.processes.back();
+
+  EXPECT_TRUE(service.wait_for_output("keyboard runs on ", kPatience));
+  EXPECT_TRUE(contained.wait_for_output("role mass in scene 'wall'", kPatience));
+  EXPECT_TRUE(contained.wait_for_output("sim runs on ", kPatience));
+  service.signal(SIGTERM);  // to the launcher alone, as KillMode=mixed says
+  EXPECT_EQ(service.wait(kPatience), 0);
+  EXPECT_TRUE(contained.wait_for_output("sim has ended on ", kPatience));
+  const pid_t first = child_of(contained.id());
+  ASSERT_NE(first, 0);
+  kill(first, SIGTERM);  // as podman stops a container: its first process alone
+  EXPECT_EQ(contained.wait(kPatience), 0);
 }
 
 /// "state hash H after N steps" of a run.

@@ -319,6 +319,41 @@ TEST(RefusedDevices, AreSupportedOnceTheirAnswersAreMeasuredFastEnough) {
   EXPECT_NEAR(devices.loops()[0].supported_stiffness.value(), 2070.0, 50.0);
 }
 
+TEST(RefusedDevices, OfAnotherHostAreThoseWhoseLinkIsNotMeasuredYet) {
+  MeasuredDevices session;
+  RefusedDevices& devices = session.devices;
+  devices.play(walls_of("100"));  // two of them: d < 7
+  EXPECT_TRUE(devices.receive(description_of(1, 1.5), session.now_nsec));
+  EXPECT_TRUE(devices.receive(description_of(2, 1.5), session.now_nsec, true));
+  EXPECT_TRUE(devices.receive(description_of(3, 1.5), session.now_nsec, true));
+
+  EXPECT_FALSE(session.refuses(1)) << "of this host one period is assumed";
+  EXPECT_TRUE(session.refuses(2));
+  EXPECT_NE(devices.text().find("needs an answer within 70"), std::string::npos) << devices.text();
+  EXPECT_NE(devices.text().find("the device 'keyboard' runs on another host: no force until 1000 "
+                                "answers are measured"),
+            std::string::npos)
+      << devices.text();
+
+  session.play(1, 5e-3, 2);
+  EXPECT_FALSE(session.refuses(2));
+  session.play(1, 8e-3, 3);
+  EXPECT_TRUE(session.refuses(3));
+  EXPECT_NE(devices.text().find("its answers take 8"), std::string::npos) << devices.text();
+
+  session.play(20, 5e-3, 1);  // nothing of the others: beyond all windows
+  EXPECT_FALSE(session.refuses(2)) << "it counts what was measured last";
+}
+
+TEST(RefusedDevices, OfAnotherHostPlayAtOnceWhatAnyLinkPermits) {
+  MeasuredDevices session;
+  session.devices.play(walls_of("3"));  // 6 N/m: 1.5 / 200.5 ms is more
+  EXPECT_TRUE(session.devices.receive(description_of(1, 1.5), session.now_nsec, true));
+
+  EXPECT_FALSE(session.refuses(1));
+  EXPECT_EQ(session.devices.text(), "");
+}
+
 TEST(RefusedDevices, AreThoseWhoseAnswersTakeLongerNowUntilTheyAreCalmAgain) {
   MeasuredDevices session;
   RefusedDevices& devices = session.devices;
