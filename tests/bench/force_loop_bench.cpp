@@ -6,7 +6,7 @@
 //        force_loop_bench --chart FILE.svg [seconds of a run, 20]
 // The first prints lockstep exchanges per second and round trip, realtime overruns with the page
 // open in Chromium (where there is one), resident memory. The second prints the delay from sensor to
-// motor and the processor time of each tick in real time, at 1, 2 and 4 kHz, polling apart; with the
+// motor, the stiffness that it permits, and the processor time of each tick in real time, at 1, 2 and 4 kHz, polling apart; with the
 // folder of another build's executables, and the WIRE_VERSION that they speak, those of both in turns.
 // The third draws how often which delay occurs.
 #include <algorithm>
@@ -137,6 +137,7 @@ struct Measured {
   double device_cpu_s = 0.0;   // of a tick, without polling
   double polling_s = 0.0;      // of a tick of the device
   double late = 0.0;           // share of the ticks of both
+  double within_s = 0.0;       // what 95 % of the answers take, as sim_node has it; 0: unknown
   std::vector<double> ages_s;  // of the samples that the commands answer, where they were asked for
 };
 
@@ -147,6 +148,20 @@ double polling_s(const std::string& log) {
   if (found == std::string::npos) return 0.0;
   const std::size_t begin = log.rfind(' ', found - 1) + 1;
   return std::stod(log.substr(begin, found - begin)) * 1e-6;
+}
+
+/// What 95 % of the answers take, as the status of sim_node says [s]; 0: it does not.
+double within_s(const std::string& text) {
+  const std::string begin = "is answered within ";
+  const std::size_t found = text.find(begin);
+  return found == std::string::npos ? 0.0 : std::stod(text.substr(found + begin.size())) * 1e-6;
+}
+
+/// The stiffness b / (T/2 + d T) that this delay permits over that of a whole period; as in the limits of a device a
+/// tenth more than the delay counts.
+double stiffness_gain(double delay_s, int rate_hz) {
+  constexpr double kRoom = 1.1;
+  return 1.5 / (0.5 + kRoom * delay_s * rate_hz);
 }
 
 /// Processor time of a process [s].
@@ -230,6 +245,7 @@ std::optional<Measured> realtime_run(int rate_hz, std::chrono::seconds duration,
   measured.p50_s = key->latency_p50_s();
   measured.p99_s = key->latency_p99_s();
   measured.max_s = key->latency_max_s();
+  measured.within_s = within_s(end->text());
   measured.late = static_cast<double>(end->overruns() + key->overruns()) /
                   static_cast<double>(end->ticks() + key->ticks());
   device.signal(SIGINT);
@@ -246,6 +262,10 @@ void print_run(const char* name, int rate_hz, const Measured& run) {
       "processor per tick: scene %5.1f us, device %5.1f us + %5.1f us polling\n",
       name, rate_hz, run.p50_s * 1e6, run.p99_s * 1e6, run.max_s * 1e6, 100.0 * run.late,
       run.sim_cpu_s * 1e6, run.device_cpu_s * 1e6, run.polling_s * 1e6);
+  if (run.within_s > 0.0)
+    std::printf(
+        "         95 %% within %.0f us: %.2f times the stiffness of an answer after a period\n",
+        run.within_s * 1e6, stiffness_gain(run.within_s, rate_hz));
   std::fflush(stdout);
 }
 

@@ -99,6 +99,8 @@ TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
   key.latency_max_s(2.31e-3);
   key.port_energy_j(-0.002);
   key.passivity_ticks(7);
+  key.link_samples(20000);
+  key.link_unanswered(240);
   board.put(key);
 
   EXPECT_EQ(
@@ -118,7 +120,8 @@ TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
       "states of pairs FORGOTTEN for lack of memory: 17\n"
       "positions and forces refused, not finite: 5\n"
       "state hash 0123456789abcdef after 10000 steps\n"
-      "keyboard gave the hand -0.002 J, damped in 7 ticks\n");
+      "keyboard gave the hand -0.002 J, damped in 7 ticks\n"
+      "keyboard: 1.20 % of 20000 samples without an answer of their own\n");
 }
 
 TEST(StatusTable, ReportsCausesInTheWordsOfTheNode) {

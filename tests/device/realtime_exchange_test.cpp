@@ -88,6 +88,7 @@ class PromptDriver : public Driver {
   bool read(AxisValues& sensed) noexcept override {
     sensed.fill(0.0);
     sensed[0] = -0.001 * periods;
+    time_nsec += reading_nsec;
     return true;
   }
   bool write(const AxisValues&) noexcept override {
@@ -106,6 +107,7 @@ class PromptDriver : public Driver {
   void stop() noexcept override {}
 
   std::vector<Command> commands;
+  std::int64_t reading_nsec = 0;  // how long the sensors take
   int periods = 0;
   int writes = 0;
 };
@@ -199,6 +201,19 @@ TEST(RealtimeExchange, SamplesSayWhenTheSensorsWereReadAndHowOldTheirAnswerWas) 
   EXPECT_DOUBLE_EQ(sent[4].answer_delay_s, 70e-6);
   EXPECT_EQ(sent[2].answered_sample, 1u);
   EXPECT_EQ(sent[4].answered_sample, 2u);
+}
+
+TEST(RealtimeExchange, TheAgeOfASampleCountsFromTheBeginningOfItsReading) {
+  time_nsec = 1'000'000'000;
+  PromptRig rig;
+  rig.driver.reading_nsec = 40'000;
+
+  rig.period(3.0, 120'000);
+  rig.period(3.0, 120'000);
+
+  ASSERT_EQ(rig.channel.sent.size(), 2u);
+  EXPECT_EQ(rig.channel.sent[0].time_nsec, 1'000'000'000);
+  EXPECT_EQ(rig.channel.sent[1].time_nsec, 1'001'000'000);
 }
 
 TEST(RealtimeExchange, AnAnswerToAnOldSampleOnceMoreSaysHowOldItIsNow) {

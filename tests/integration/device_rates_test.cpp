@@ -1,5 +1,6 @@
 // tests/integration/device_rates_test.cpp -- devices of two rates in one real session.
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <string>
 
@@ -100,6 +101,20 @@ TEST_F(DeviceRates, EachGetsItsForcesAndTheSlowOneDelaysNoAnswerToTheFastOne) {
   EXPECT_GT(5 * fast.on_arrival, 2 * fast.applied) << fast.on_arrival << " of " << fast.applied;
   const Answers slow = next_answers("pedal", 4e-3, 500);
   EXPECT_GT(5 * slow.on_arrival, 2 * slow.applied) << slow.on_arrival << " of " << slow.applied;
+}
+
+TEST_F(DeviceRates, OneThatFallsSilentDelaysNoAnswerToTheOther) {
+  next_answers("keyboard", 1e-3, 1000);
+  next_answers("pedal", 4e-3, 250);
+
+  session_.node("pedal").signal(SIGSTOP);
+  next_answers("keyboard", 1e-3, 100);  // it counts as silent after 20 ms
+  const Answers fast = next_answers("keyboard", 1e-3, 2000);
+  session_.node("pedal").signal(SIGCONT);
+
+  // A scene that waited for the silent one would answer at the end of each period.
+  EXPECT_GT(5 * fast.on_arrival, 2 * fast.applied) << fast.on_arrival << " of " << fast.applied;
+  EXPECT_TRUE(status_.wait_for_phase("pedal", msg::PHASE_RUNNING)) << "back by itself";
 }
 
 }  // namespace

@@ -162,6 +162,31 @@ TEST(ArrivalRule, ADeviceThatPausesIsOwedNoMoreThanTwo) {
   EXPECT_LE(held, 2 * 9) << "two after each pause";
 }
 
+TEST(ArrivalRule, WaitsForNoDeviceThatIsSilent) {
+  ArrivalRule rule(kSceneRate, kRuleStart);
+  std::vector<ArrivalRule::Device> devices{{.id = 1, .sent = 0, .plays = true},
+                                           {.id = 2, .sent = 0, .plays = true}};
+  std::int64_t now = kRuleStart;
+  const auto plays_on_arrival = [&](bool of_both) {
+    rule.begin_wait(devices);
+    now = std::max(now, rule.grid().begin_nsec()) + 1000;
+    EXPECT_FALSE(rule.is_due(devices, now)) << "nothing has come";
+    ++devices[0].sent;
+    devices[1].sent += of_both ? 1 : 0;
+    const bool is_due = rule.is_due(devices, now);
+    if (!is_due) now = rule.grid().end_nsec();
+    rule.begin_tick(devices, now);
+    return is_due;
+  };
+  for (int n = 0; n < 100; ++n) EXPECT_TRUE(plays_on_arrival(true)) << n;
+
+  for (int n = 0; n < 20; ++n)
+    EXPECT_FALSE(plays_on_arrival(false)) << "it may only be late: " << n;
+  devices[1].plays = false;
+  plays_on_arrival(false);  // it was owed two
+  for (int n = 0; n < 100; ++n) EXPECT_TRUE(plays_on_arrival(false)) << n;
+}
+
 TEST(ArrivalRule, RestartsAtAnotherRateAsIfItWereNew) {
   const std::int64_t now = kRuleStart + 123'456'789;
   ArrivalRule restarted(kSceneRate, kRuleStart);
