@@ -226,9 +226,10 @@ void DeviceLink::answer(DeviceExchange& device, const Simulation& simulation) {
   // An answer that is not sent counts as one: a session that is computed again has all of them.
   const bool is_withheld = clock_ == config::Clock::kRealtime && device.is_restarting();
   const auto send = [&](auto& writer, auto& answer) {
-    if (!is_withheld && !writer.write(answer)) ++unwritten_;
+    if (is_withheld) return;
+    delays_.answer(device.received_epoch(), device.received_sample(), answer.sample(), now);
+    if (!writer.write(answer)) ++unwritten_;
   };
-  if (!is_withheld) delays_.answer(device.received_epoch(), device.received_sample(), now);
   if (device.role() == Role::kMass) {
     send(force_writer_, device.answer_forces(world, safe, now));
   } else {

@@ -132,19 +132,18 @@ void AnswerDelays::record(std::uint64_t epoch, const Report& report,
   }
 }
 
-void AnswerDelays::answer(std::uint64_t epoch, std::uint64_t sample,
+void AnswerDelays::answer(std::uint64_t epoch, std::uint64_t sample, std::uint64_t answer,
                           std::int64_t now_nsec) noexcept {
   Process* process = find(epoch);
   if (process == nullptr || process->seen_epoch != epoch || process->taken_sample != sample) return;
-  Turn& turn = process->turns[sample % process->turns.size()];
-  if (turn.sample == sample) return;
-  turn = {sample, static_cast<double>(now_nsec - process->taken_nsec) * 1e-9};
+  Turn& turn = process->turns[answer % process->turns.size()];
+  turn = {answer, static_cast<double>(now_nsec - process->taken_nsec) * 1e-9};
 }
 
 /// The least that the delay of an answer can have been.
 double AnswerDelays::min_delay_s(const Process& process, std::uint64_t answered_sample) noexcept {
   const Turn& turn = process.turns[answered_sample % process.turns.size()];
-  return turn.sample == answered_sample ? std::max(kFastestAnswer, turn.took_s) : kFastestAnswer;
+  return turn.answer == answered_sample ? std::max(kFastestAnswer, turn.took_s) : kFastestAnswer;
 }
 
 void AnswerDelays::leave_out(std::uint64_t epoch, std::int64_t now_nsec) noexcept {

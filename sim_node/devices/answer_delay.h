@@ -68,7 +68,7 @@ class AnswerDelays {
   /// What a sample says of the answers.
   struct Report {
     std::uint64_t sample = 0;           ///< its own number
-    std::uint64_t answered_sample = 0;  ///< the answer that was felt last
+    std::uint64_t answered_sample = 0;  ///< the number of the answer that was felt last
     double delay_s = 0.0;               ///< of it
   };
 
@@ -83,9 +83,10 @@ class AnswerDelays {
   /// allocation.
   void record(std::uint64_t epoch, const Report& report, std::int64_t now_nsec) noexcept;
 
-  /// Loop: the answer to a sample goes out. Its delay is at least the time since record() was called
-  /// with it. Only the first answer to a sample counts. O(kMaxProcesses), no lock, no allocation.
-  void answer(std::uint64_t epoch, std::uint64_t sample, std::int64_t now_nsec) noexcept;
+  /// Loop: an answer to a sample goes out, with a number of its own. Its delay is at least the time
+  /// since record() was called with the sample. O(kMaxProcesses), no lock, no allocation.
+  void answer(std::uint64_t epoch, std::uint64_t sample, std::uint64_t answer,
+              std::int64_t now_nsec) noexcept;
 
   /// Loop: a new sample that reports nothing. What comes next follows from no report before.
   void leave_out(std::uint64_t epoch, std::int64_t now_nsec) noexcept;
@@ -96,9 +97,9 @@ class AnswerDelays {
   double quantile() const noexcept { return quantile_; }
 
  private:
-  /// How long the answer to a sample took here.
+  /// How long an answer took here.
   struct Turn {
-    std::uint64_t sample = 0;
+    std::uint64_t answer = 0;
     double took_s = 0.0;
   };
   struct Process {
@@ -112,7 +113,7 @@ class AnswerDelays {
     double waited_s = 0.0;  // since the newest answer was new
     std::uint64_t taken_sample = 0;
     std::int64_t taken_nsec = 0;
-    std::array<Turn, 64> turns{};  // of the last answers, by the sample that they answer
+    std::array<Turn, 64> turns{};  // of the last answers, by their numbers
   };
   static double min_delay_s(const Process& process, std::uint64_t answered_sample) noexcept;
   static constexpr std::uint64_t kMaxLost = 64;  // in a row that count

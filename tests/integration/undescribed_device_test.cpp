@@ -41,14 +41,14 @@ class HandmadeDevice {
     sample_.axis_count(1);
   }
 
-  void describe() {
+  void describe(double rate_hz = 1000.0) {
     msg::DeviceDescription description;
     description.device_id(sample_.device_id());
     description.device("keyboard");
     description.driver("handmade");
     description.epoch(sample_.epoch());
     description.coordinate_count(1);
-    description.rate_hz(1000.0);
+    description.rate_hz(rate_hz);
     description.moving_mass_kg(0.05);
     description.travel_m()[0] = 0.08;
     description.lowest_m(-0.04);
@@ -62,6 +62,14 @@ class HandmadeDevice {
     sample_.epoch(epoch);
     sample_.sample(0);
     describe();
+  }
+
+  /// What the next samples say of the newest answer.
+  void report_delay(double delay_s) {
+    sample_.answered_epoch(answer_.epoch());
+    sample_.answered_sample(answer_.sample());
+    sample_.answered_time_nsec(answer_.time_nsec());
+    sample_.answer_delay_s(delay_s);
   }
 
   /// Sends the next sample with a value of its axis.
@@ -324,6 +332,36 @@ TEST(UndescribedDevice, OfRoleMassIsAnsweredInLockstepAndGivenNoForce) {
 
 TEST(UndescribedDevice, OfRoleLiaisonIsAnsweredInLockstepAndMovesNothing) {
   expect_the_same_in_every_run<msg::GestureForces>(pushed_mass_scene(), -1.0, -0.01);
+}
+
+TEST(DescribedDevice, ThatReportsAnswersBeforeTheyWentOutIsNotBelieved) {
+  LiveSession session("realtime", kSimAlone);
+  session.add_file("scene.yaml", wall_scene(100.0));
+  StatusWatch status(session.participant());
+  HandmadeDevice<msg::GesturePositions> device(session.participant());
+  device.describe(10.0);  // 20 answers are enough
+  session.start("sim_node", "sim");
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_WAITING));
+
+  dds::Reader<msg::NodeStatus> reports(session.participant(), dds::Topic::kStatus);
+  msg::NodeStatus report;
+  std::smatch match;
+  const std::regex within("is answered within ([0-9]+) us");
+  const auto is_measured = [&] {
+    while (reports.take(report)) {
+    }
+    return std::regex_search(report.text(), match, within);
+  };
+  for (int n = 0; n < 1000 && !is_measured(); ++n) {
+    device.send(0.0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    device.is_answered();
+    device.report_delay(1e-6);
+  }
+  ASSERT_EQ(match.size(), 2u) << report.text();
+
+  EXPECT_GT(std::stod(match[1]), 1000.0)
+      << "the newest answer went out some 20 ms after its sample";
 }
 
 }  // namespace

@@ -186,12 +186,14 @@ TEST(AnswerDelays, AreNeverShorterThanTheFastestAnswer) {
 
 TEST(AnswerDelays, AreNeverShorterThanTheSampleWasHere) {
   constexpr std::int64_t kHere = 300'000;  // [ns]
+  constexpr std::uint64_t kBefore =
+      700;  // answers before the first sample: they have numbers of their own
   Measured measured(1.0);
   for (std::uint64_t n = 1; n <= 2000; ++n) {
     const auto now = static_cast<std::int64_t>(n) * 1'000'000;
-    measured.delays->record(kMeasuredEpoch, {n, n - 1, 50e-6}, now);
-    measured.delays->answer(kMeasuredEpoch, n, now + kHere);
-    measured.delays->answer(kMeasuredEpoch, n, now + 900'000);  // once more
+    measured.delays->record(kMeasuredEpoch, {n, kBefore + 2 * (n - 1), 50e-6}, now);
+    measured.delays->answer(kMeasuredEpoch, n, kBefore + 2 * n, now + kHere);
+    measured.delays->answer(kMeasuredEpoch, n, kBefore + 2 * n + 1, now + 900'000);  // once more
   }
   EXPECT_GE(measured.at(kSecondNsec).value(), 300e-6);
   EXPECT_LE(measured.at(kSecondNsec).value(), 310e-6);
@@ -200,8 +202,8 @@ TEST(AnswerDelays, AreNeverShorterThanTheSampleWasHere) {
 TEST(AnswerDelays, OfAnotherProcessSayNothingOfThis) {
   Measured measured(1.0);
   measured.delays->record(5, {1, 0, 0.0}, 0);
-  measured.delays->answer(5, 1, 900'000'000);
-  measured.delays->answer(kMeasuredEpoch, 1, 900'000'000);  // a sample that was not taken
+  measured.delays->answer(5, 1, 1, 900'000'000);
+  measured.delays->answer(kMeasuredEpoch, 1, 1, 900'000'000);  // a sample that was not taken
   measured.answer(1e-4, 2000);
   EXPECT_LE(measured.at(kSecondNsec).value(), 1.04e-4);
 }
