@@ -151,6 +151,7 @@ struct TwoHosts::Cable {
     for (;;) {
       const ssize_t size = read(ends[static_cast<std::size_t>(from)], block.data(), block.size());
       if (size <= 0) return;
+      largest = std::max(largest.load(), static_cast<std::size_t>(size));
       if (faults.is_cut || chance(random) < faults.loss) {
         ++lost;
         continue;
@@ -184,6 +185,7 @@ struct TwoHosts::Cable {
   std::uint64_t count = 0;
   std::atomic<std::uint64_t> passed{0};
   std::atomic<std::uint64_t> lost{0};
+  std::atomic<std::size_t> largest{0};
   std::atomic<bool> ending{false};
   std::thread thread;
 };
@@ -228,6 +230,10 @@ std::uint64_t TwoHosts::passed() const noexcept {
 
 std::uint64_t TwoHosts::lost() const noexcept {
   return cable_->lost;
+}
+
+std::size_t TwoHosts::largest() const noexcept {
+  return cable_->largest;
 }
 
 void TwoHosts::run_on(Host host, const std::function<void()>& work) const {

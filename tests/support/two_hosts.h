@@ -3,6 +3,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -42,6 +43,8 @@ class TwoHosts {
   /// Packets that have passed and that were lost, both ways.
   std::uint64_t passed() const noexcept;
   std::uint64_t lost() const noexcept;
+  /// Bytes of the largest packet so far, with the headers of IP and UDP.
+  std::size_t largest() const noexcept;
 
   static const char* address(Host host) { return host == kFirst ? "192.168.5.1" : "192.168.5.2"; }
 

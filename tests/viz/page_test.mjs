@@ -111,6 +111,9 @@ const cases = {
     const lost = page.locator('#nodes td.lost').first();
     assert.equal(await lost.textContent(), '7 lost');
     assert.match(await lost.getAttribute('title'), /^messages lost, late or refused/);
+    const link = /^keyboard: round trip 92\.0\sµs, 1\.20 % of 20.000 samples without an answer$/;
+    assert.match(await page.locator('#latency').getAttribute('title'), link);
+    assert.equal(await page.locator('#nodes tr', { hasText: 'keyboard' }).locator('td.lost').textContent(), '1.2 % lost');
     await page.evaluate(() => document.querySelectorAll('#nodes td').forEach((cell) => (cell.isTheFirst = true)));
     const since = await textOf(page, '#time');
     await until('the figures go on', async () => Number(await textOf(page, '#time')) > Number(since) + 1);

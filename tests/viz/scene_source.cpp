@@ -391,6 +391,8 @@ int publish(const Options& options) {
                                               [&](msg::NodeStatus& status) {
                                                 speak(status);
                                                 status.latency_count(step);
+                                                status.link_samples(20'000);
+                                                status.link_unanswered(240);
                                                 status.latency_p50_s(92e-6);
                                                 status.latency_p99_s(310e-6);
                                                 status.latency_max_s(1.9e-3);
