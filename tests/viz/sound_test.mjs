@@ -158,6 +158,26 @@ const cases = {
     assert.ok(figures.filter(({ nowS }) => nowS > 5).every(({ bufferS }) => bufferS < 0.06 + 0.25 + 0.02));
   },
 
+  'on a machine that stops again and again the pitch stays within 5 cents wherever it is heard without a gap': () => {
+    for (const longestS of [0.05, 0.1, 0.3]) {
+      const draw = lot(11);
+      const stops = []; // half of the time
+      for (let atS = 0; atS < 20; atS += 2 * longestS) stops.push([atS + longestS * draw(), atS + longestS * (1 + draw())]);
+      const arrival = (atS) => stops.find(([from, to]) => from <= atS && atS < to)?.[1] ?? atS;
+      const { heard, figures, last } = play(sent({ toS: 20 }).map((block) => ({ ...block, atS: arrival(block.atS) })), 20);
+      assert.ok(roughness(heard) < SMOOTH, `rough: ${roughness(heard)}`);
+      let [stretches, worst] = [0, 0];
+      figures.forEach(({ nowS, steadyS }, i) => {
+        if (steadyS < 0.3 || i % 30 !== 0) return;
+        ++stretches;
+        worst = Math.max(worst, Math.abs(cents(frequency(heard, 440, nowS - 0.3, nowS), 440)));
+      });
+      console.log(`  stops of up to ${longestS} s: ${last.dropouts} dropouts, ${stretches} stretches, ${worst.toFixed(2)} cents at worst`);
+      assert.ok(worst < 5.3, `${worst} cents`);
+      assert.ok(longestS > 0.1 || stretches > 50, `${stretches} stretches`);
+    }
+  },
+
   'a pause is silent, fades, and is no dropout': () => {
     const { heard, figures, last } = play([...sent({ toS: 3 }), ...sent({ fromS: 5, toS: 8, firstStep: 132_385 })], 8);
     assert.equal(last.dropouts, 0);
@@ -173,6 +193,38 @@ const cases = {
     assert.deepEqual([last.dropouts, last.lostS], [0, 0]);
     assert.ok(roughness(heard) < SMOOTH, `rough: ${roughness(heard)}`);
     for (let s = 0.5; s < 6.5; s += 0.25) assert.ok(loudness(heard, s, s + 0.25) > 0.9 * LOUD, `from ${s} s`);
+  },
+
+  'how long it is heard without a gap begins again with each dropout, each lost block and each pause': () => {
+    const gapS = { dropout: 4, loss: 6, pause: 8 };
+    const late = sent({ toS: 8 }).map((block) => (block.atS > gapS.dropout && block.atS < 4.3 ? { ...block, atS: 4.3 } : block));
+    const blocks = [...late.filter(({ atS }) => atS < 6 || atS > 6.04), ...sent({ fromS: 9, toS: 11, firstStep: 8 * 44_100 + 211 })];
+    const { heard, figures } = play(blocks, 11);
+    // Against what is heard: where it was loud all the time.
+    const isLoud = Array.from({ length: heard.length / QUANTUM }, (_, i) => loudness(heard, (i * QUANTUM - 400) / OUT_HZ, ((i + 1) * QUANTUM) / OUT_HZ) > 0.8 * LOUD);
+    const breaks = [];
+    figures.forEach(({ steadyS, nowS }, i) => {
+      const turns = Math.round((steadyS * OUT_HZ) / QUANTUM);
+      for (let k = 4; k < turns; ++k) assert.ok(isLoud[i - turns + 1 + k], `at ${nowS} s it says ${steadyS} s, but there is a gap`);
+      if (i > 0 && steadyS === 0 && figures[i - 1].steadyS > 0) breaks.push(nowS);
+    });
+    assert.equal(breaks.length, 3, `${breaks}`);
+    Object.values(gapS).forEach((s, i) => assert.ok(breaks[i] > s - 0.01 && breaks[i] < s + 0.4, `${breaks}`));
+    assert.ok(figures.at(-1).steadyS > 1.7, `${figures.at(-1).steadyS}`);
+    assert.ok(figures.find(({ nowS }) => nowS > 3.9).steadyS > 3.6);
+  },
+
+  'a listener that stops for two seconds goes on with what is left, as after a gap': () => {
+    const stream = new SoundStream(OUT_HZ);
+    const turn = new Float32Array(QUANTUM);
+    let nowS = 0;
+    for (const block of sent({ toS: 4 })) {
+      for (; nowS < block.atS; nowS += QUANTUM / OUT_HZ) if (block.atS < 1 || block.atS > 3) stream.read(turn, nowS);
+      if (block.atS > 3 && block.atS < 3.01) assert.ok(stream.figures.steadyS < 0.1, `${stream.figures.steadyS} s without a gap`);
+      if (block.atS > 0.9 && block.atS < 1) assert.ok(stream.figures.steadyS > 0.7);
+      stream.push(block, nowS);
+    }
+    assert.equal(stream.figures.state, 'playing');
   },
 
   'lost blocks fade out and in, and are counted': () => {

@@ -2,6 +2,7 @@
 import type { Page } from './page.ts';
 import type { PointerFigures } from './pointer.ts';
 import type { NodeState, Reply } from './protocol.ts';
+import type { Spectrum } from './sound/sound_panel.ts';
 import type { SoundFigures } from './sound/sound_stream.ts';
 import type { Take } from './take.ts';
 
@@ -33,8 +34,8 @@ export interface Viz {
   project(index: number): { x: number; y: number } | null;
   /** Where a place of the scene [m] is on the page [CSS pixels]. */
   screenOf(place: number[]): { x: number; y: number } | null;
-  /** Levels of the sound as it is played [dB], one each `binHz`; null while none is. */
-  soundSpectrum(): { binHz: number; levels: number[] } | null;
+  /** Of the sound as it is played; null while none is. */
+  soundSpectrum(): Spectrum | null;
   /** Red, green and blue of the view at a place on the page, 0..255. */
   pixelAt(x: number, y: number): number[] | null;
 }

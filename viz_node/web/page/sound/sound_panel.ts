@@ -19,6 +19,14 @@ interface Output {
   volume: GainNode;
 }
 
+/** Levels of a sound [dB], one each `binHz`: of the last `lengthS` before `nowS`, by the clock of the sound card. */
+export interface Spectrum {
+  binHz: number;
+  levels: number[];
+  nowS: number;
+  lengthS: number;
+}
+
 export class SoundPanel {
   isOn = false;
   figures: SoundFigures | null = null;
@@ -61,12 +69,13 @@ export class SoundPanel {
     this.output.source.port.postMessage(block, [block.samples.buffer]);
   }
 
-  /** Levels of what is played, before the volume [dB], one each `binHz`; null while nothing is. */
-  spectrum(): { binHz: number; levels: number[] } | null {
+  /** Of what is played, before the volume; null while nothing is. */
+  spectrum(): Spectrum | null {
     if (this.output === null) return null;
-    const levels = new Float32Array(this.output.analyser.frequencyBinCount);
-    this.output.analyser.getFloatFrequencyData(levels);
-    return { binHz: this.output.context.sampleRate / FFT_SIZE, levels: [...levels] };
+    const { analyser, context } = this.output;
+    const levels = new Float32Array(analyser.frequencyBinCount);
+    analyser.getFloatFrequencyData(levels);
+    return { binHz: context.sampleRate / FFT_SIZE, levels: [...levels], nowS: context.currentTime, lengthS: FFT_SIZE / context.sampleRate };
   }
 
   private async toggle(): Promise<void> {

@@ -32,6 +32,8 @@ export interface SoundFigures {
   lostS: number; // of sound that never came
   ratio: number; // of the listener's clock to the sender's, as it is followed
   sceneRate: number; // seconds of sound per second; NaN when not known
+  steadyS: number; // for how long it has been heard without a gap
+  nowS: number; // the time of these figures, by the clock of the listener
 }
 
 const fade = (share: number) => 0.5 - 0.5 * Math.cos(Math.PI * Math.max(0, Math.min(1, share)));
@@ -62,6 +64,9 @@ export class SoundStream {
   private meter = new RateMeter();
   private isPaused = false;
   private isLeaving = false; // another rate begins
+  private brokenUntil = 0; // samples up to here are not all of one piece
+  private steady = 0; // samples of the listener without a gap
+  private nowS = 0;
 
   /** @param outputHz  samples per second of read() */
   constructor(private readonly outputHz: number) {}
@@ -84,8 +89,10 @@ export class SoundStream {
 
   /** Fills `out`, whose first sample is heard at `nowS`. */
   read(out: Float32Array, nowS: number): void {
+    this.nowS = nowS + out.length / this.outputHz;
     if (nowS - this.lastPushS > PAUSE_S) this.isPaused = true;
     if (this.resampler === null) return void out.fill(0);
+    const wasWhole = this.level === 1;
     const ahead = this.bufferS;
     if (this.isAudible) this.follower.note(ahead, this.aimS, out.length / this.outputHz);
     this.control(ahead, out.length / this.outputHz, nowS);
@@ -101,13 +108,15 @@ export class SoundStream {
       out[i] = limited(fade(this.level) * this.resampler.valueAt(this.ring, first, this.position - first));
       this.position += step;
     }
+    this.steady = wasWhole && this.level === 1 && this.position > this.brokenUntil ? this.steady + out.length : 0;
   }
 
   get figures(): SoundFigures {
-    const { targetS, dropouts, lostS } = this;
+    const { targetS, dropouts, lostS, nowS } = this;
+    const steadyS = this.steady / this.outputHz;
     const sceneRate = this.meter.value;
     const state = this.isPaused ? 'paused' : this.isOffRate ? 'off rate' : this.isAudible ? 'playing' : 'waiting';
-    return { state, bufferS: this.bufferS, targetS, dropouts, lostS, ratio: this.follower.ratio, sceneRate };
+    return { state, bufferS: this.bufferS, targetS, dropouts, lostS, ratio: this.follower.ratio, sceneRate, steadyS, nowS };
   }
 
   private get isOffRate(): boolean {
@@ -137,6 +146,7 @@ export class SoundStream {
     this.ring = new Float32Array(2 ** Math.ceil(Math.log2(needed)));
     this.written = 0;
     this.position = 0;
+    this.brokenUntil = 0;
     this.nextStep = Number.NaN;
     this.rampIn = 0;
     this.level = 0;
@@ -150,10 +160,12 @@ export class SoundStream {
     const length = Math.min(ramp, Math.max(0, Math.floor(this.readable)));
     for (let i = 0; i < length; ++i) this.ring[(this.written - 1 - i) & mask]! *= fade(i / length);
     this.rampIn = ramp;
+    this.brokenUntil = this.written + ramp;
     if (!(missing > 0) || missing > LONGEST_LOSS_S * this.rateHz) return;
     this.lostS += missing / this.rateHz;
     const silence = missing <= LONGEST_GAP_S * this.rateHz ? missing : 0;
     for (let i = 0; i < silence; ++i) this.ring[this.written++ & mask] = 0;
+    this.brokenUntil = this.written + ramp;
   }
 
   private write(samples: Float32Array): void {
