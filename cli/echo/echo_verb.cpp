@@ -2,29 +2,26 @@
 #include "cli/echo/echo_verb.h"
 
 #include <charconv>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
+#include <string>
+#include <vector>
 
-#include <fmt/format.h>
-
+#include "cli/echo/message_printer.h"
+#include "cli/echo/take_echo.h"
 #include "cli/exit_code.h"
-#include "cli/field_printer.h"
 #include "cli/live_output.h"
 #include "cli/message_types.h"
 #include "cli/session_words.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
-#include "node/terminal_text.h"
-#include "record_node/idl/message_decoder.h"
 
 namespace cordis::cli {
 namespace {
 
-constexpr std::size_t kListed = 16;  // of a list in YAML, without --full
 constexpr auto kEchoWait = std::chrono::milliseconds(100);
 
 struct EchoWords {
@@ -45,69 +42,11 @@ std::optional<std::uint64_t> count_of(const std::string& text) {
   return count;
 }
 
-/// Prints messages in one of the formats.
-class Printer {
- public:
-  explicit Printer(const EchoWords& words)
-      : format_(words.format), full_(words.full), types_(known_message_types(words.idl_files)) {}
-
-  /// @return false when it could not be printed, for its type is not known or it does not fit it
-  bool print(const ReceivedMessage& message) {
-    const auto type = types_.find(message.topic.type);
-    if (type == types_.end()) {
-      say_once(message.topic, "the type " + message.topic.type +
-                                  " is not known: name a file that defines it with --idl");
-      return false;
-    }
-    try {
-      node::print_text(stdout, text_of(*type->second, message));
-      return true;
-    } catch (const record::DecodeError& error) {
-      say_once(message.topic, error.what());
-      return false;
-    }
-  }
-
- private:
-  std::string text_of(const record::MessageType& type, const ReceivedMessage& message) {
-    const double time_s = static_cast<double>(message.source_nsec) * 1e-9;
-    if (format_ == "ndjson")
-      return fmt::format("{{\"topic\":\"{}\",\"time_s\":{:.9f},\"sequence\":{},\"message\":{}}}\n",
-                         message.topic.name, time_s, message.sequence,
-                         json_of(type, message.bytes));
-    if (format_ == "csv") {
-      const FieldCells cells = csv_of(type, message.bytes);
-      std::string text;
-      if (cells.names != header_)  // the first message, or one of another length
-        text = "time_s," + cells.names + "\n";
-      header_ = cells.names;
-      return text + fmt::format("{:.9f},{}\n", time_s, cells.values);
-    }
-    return fmt::format("topic: {}\ntime_s: {:.9f}\nsequence: {}\nmessage:\n{}---\n",
-                       message.topic.name, time_s, message.sequence,
-                       yaml_of(type, message.bytes, full_ ? 0 : kListed));
-  }
-
-  void say_once(const dds::RawTopic& topic, const std::string& what) {
-    if (said_.insert(topic.name).second)
-      node::print_text(stderr, "cordis echo: " + topic.name + ": " + what + "\n");
-  }
-
-  std::string format_;
-  bool full_;
-  record::MessageTypes types_;
-  std::string header_;
-  std::set<std::string> said_;
-};
-
-int echo(const EchoWords& words) {
-  if (words.format != "yaml" && words.format != "ndjson" && words.format != "csv")
-    throw UsageError("--format must be yaml, ndjson or csv, got '" + words.format + "'");
-  if (words.format == "csv" && words.topic.empty())
-    throw UsageError("a table in CSV has one topic: name it behind the session");
-  const std::optional<std::uint64_t> count = count_of(words.count);
+/// Prints what comes, until a signal or enough. @return exit code
+int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
+                 MessagePrinter& printer) {
   const SessionAddress address = words.target.address();
-  Printer printer(words);
+  const record::MessageTypes types = known_message_types(words.idl_files);
   node::install_stop_signals();
   TopicListener listener(address, words.topic, true);
   SilenceNote silence("echo", address.session, words.topic);
@@ -116,7 +55,15 @@ int echo(const EchoWords& words) {
   while (!node::stop_requested() && (!count || printed < *count)) {
     for (const ReceivedMessage& message : listener.take(kEchoWait)) {
       ++received;
-      if (printer.print(message)) ++printed;
+      const auto type = types.find(message.topic.type);
+      const bool is_printed =
+          printer.print({.topic = message.topic.name,
+                         .type_name = message.topic.type,
+                         .type = type == types.end() ? nullptr : type->second.get(),
+                         .time_nsec = message.source_nsec,
+                         .sequence = message.sequence,
+                         .bytes = message.bytes});
+      if (is_printed) ++printed;
       if (count && printed == *count) break;
     }
     if (!flush_output()) break;
@@ -129,25 +76,44 @@ int echo(const EchoWords& words) {
   return listener.left_out() > 0 ? kLoss : kSuccess;
 }
 
+int echo(const EchoWords& words) {
+  MessagePrinter printer(words.format, words.full);
+  if (words.format == "csv" && words.topic.empty())
+    throw UsageError("a table in CSV has one topic: name it behind the session or take");
+  const std::optional<std::uint64_t> count = count_of(words.count);
+  if (!names_take(words.target.session)) return echo_session(words, count, printer);
+  if (!words.target.domain.empty() || !words.target.name.empty())
+    throw UsageError("--domain and --session are for running sessions");
+  node::install_stop_signals();
+  return echo_take({words.target.session, words.topic, count, words.idl_files}, printer);
+}
+
 }  // namespace
 
 void add_echo_verb(CommandLine& line) {
   auto words = std::make_shared<EchoWords>();
-  Verb& verb = line.verb("echo", "SESSION [TOPIC] [options]", "Print the messages of a session");
-  add_topic_words(verb, words->target, words->topic);
+  Verb& verb = line.verb("echo", "SESSION|TAKE [TOPIC] [options]",
+                         "Print the messages of a session or a take");
+  verb.optional_word("SESSION|TAKE", words->target.session,
+                     "The launch file, or the name of the session; or an MCAP file");
+  verb.optional_word("TOPIC", words->topic, "A topic, or a pattern: 'gesture/*'");
   verb.option("--format", "FORMAT", words->format, "yaml, ndjson or csv (yaml)");
   verb.option("-n,--count", "N", words->count, "End after so many messages");
   verb.flag("--full", words->full, "In YAML, whole lists and not their first 16 elements");
   verb.list("--idl", "FILE,...", words->idl_files, "IDL files of types that Cordis does not have");
   add_session_options(verb, words->target);
   verb.examples(
-      "It prints until Ctrl-C. time_s counts from 1970, by the clock of the writer.\n"
+      "Of a session it prints until Ctrl-C, of a take all that it holds, by the types that the "
+      "take\n"
+      "describes. time_s counts from 1970, by the clock of the writer.\n"
       "--domain N without a session prints what all programs of the domain say.\n"
-      "Exit code: 0 done, 1 no such session or failed, 2 bad command line, 3 messages left out.\n\n"
+      "Exit code: 0 done, 1 no such session or failed, 2 no take or bad command line, 3 messages\n"
+      "left out.\n\n"
       "Examples:\n"
       "  cordis echo plucked_string scene/signals\n"
       "  cordis echo plucked_string gesture/positions --format csv -n 1000\n"
-      "  cordis echo plucked_string 'scene/*' --format ndjson\n");
+      "  cordis echo plucked_string 'scene/*' --format ndjson\n"
+      "  cordis echo take.mcap scene/description -n 1\n");
   verb.action([words] { return echo(*words); });
 }
 

@@ -33,7 +33,7 @@ std::string others_in(const mcap::Reader& take) {
 }  // namespace
 
 ExportResult export_take(const mcap::Reader& take, const ExportOptions& options) {
-  refuse_shared_files(options);
+  refuse_shared_files(options, {"the take", take.path().string()});
   if (!options.has_table() && options.wav_file.empty() && options.events_file.empty())
     throw UsageError("say which file: --csv, --npz, --wav or --events");
   const TakeScene scene = scene_of_take(take, options.scene);

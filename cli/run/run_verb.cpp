@@ -12,6 +12,7 @@
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
 #include "cli/run/session.h"
+#include "cli/table/table_options.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
 #include "node/session_key.h"
@@ -130,6 +131,10 @@ void add_run_verb(CommandLine& line) {
   verb.action([words] {
     if (!words->record.empty()) record_into(words->record, words->options);
     if (!words->duration.empty()) words->options.duration = parse_duration(words->duration);
+    refuse_shared_files({{"FILE", words->options.launch_file},
+                         {"--signals", words->options.signals_file},
+                         {"--summary", words->options.summary_file},
+                         {"--record", words->record}});
     return run(words->options);
   });
 }

@@ -167,7 +167,8 @@ class Recording {
 }  // namespace
 
 SimulateResult simulate(const SimulateOptions& options, const std::function<bool()>& stops) {
-  refuse_shared_files(options, options.summary_file, options.state_file);
+  refuse_shared_files(options, {"its own file", options.file}, options.summary_file,
+                      options.state_file);
   OfflineSession session(options.file, options.overrides);
   const double duration_s = duration_of(options, session);
   std::optional<StateFile> state;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include "cli/table/csv_file.h"
 #include "cli/table/npz_file.h"
@@ -34,21 +33,30 @@ bool are_one_file(const std::string& one, const std::string& other) {
 
 }  // namespace
 
-void refuse_shared_files(const TableOptions& options, const std::string& summary_file,
-                         const std::string& state_file) {
-  const std::vector<std::pair<std::string, const std::string*>> files{
-      {"--csv", &options.csv_file}, {"--npz", &options.npz_file},
-      {"--wav", &options.wav_file}, {"--events", &options.events_file},
-      {"--summary", &summary_file}, {"--save-state", &state_file}};
+void refuse_shared_files(const std::vector<NamedFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (files[i].second->empty() || files[j].second->empty()) continue;
-      if (are_one_file(*files[i].second, *files[j].second))
-        throw UsageError(files[j].first + " and " + files[i].first + " name the same file");
+      if (files[i].path.empty() || files[j].path.empty()) continue;
+      if (are_one_file(files[i].path, files[j].path))
+        throw UsageError(files[j].word + " and " + files[i].word + " name the same file");
     }
   }
-  for (const auto& [option, file] : {files[1], files[2]}) {
-    if (*file == "-") throw UsageError(option + " wants a file, not stdout");
+}
+
+void refuse_shared_files(const TableOptions& options, const NamedFile& read,
+                         const std::string& summary_file, const std::string& state_file) {
+  const std::vector<NamedFile> files{
+      {"--csv", options.csv_file},       {"--npz", options.npz_file}, {"--wav", options.wav_file},
+      {"--events", options.events_file}, {"--summary", summary_file}, {"--save-state", state_file},
+  };
+  for (const NamedFile& file : files) {
+    const bool is_file = !file.path.empty() && file.path != "-";
+    if (is_file && are_one_file(file.path, read.path))
+      throw UsageError(file.word + " would overwrite " + read.word + " " + read.path);
+  }
+  refuse_shared_files(files);
+  for (const NamedFile& file : {files[1], files[2]}) {
+    if (file.path == "-") throw UsageError(file.word + " wants a file, not stdout");
   }
 }
 

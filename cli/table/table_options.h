@@ -27,11 +27,21 @@ struct TableOptions {
 /// @param rows  help of --every
 void add_table_files(Verb& verb, TableOptions& options, const std::string& rows);
 
+/// A file that a word of the command line names; empty where the word is not there.
+struct NamedFile {
+  std::string word;
+  std::string path;
+};
+
+/// @throws UsageError when two words name one file, however they are written
+void refuse_shared_files(const std::vector<NamedFile>& files);
+
+/// @param read  the file that the table is of, and what it is: it is never written over
 /// @param summary_file  of --summary, for a verb that has it; else empty
 /// @param state_file  of --save-state, likewise
-/// @throws UsageError when two options name one file, or one that has to be a file is stdout
-void refuse_shared_files(const TableOptions& options, const std::string& summary_file = {},
-                         const std::string& state_file = {});
+/// @throws UsageError when two words name one file, or one that has to be a file is stdout
+void refuse_shared_files(const TableOptions& options, const NamedFile& read,
+                         const std::string& summary_file = {}, const std::string& state_file = {});
 
 /// Makes the files of the table.
 /// @throws UsageError for a file that cannot be made

@@ -69,6 +69,17 @@ TEST(Run, RefusesAMisspelledWord) {
   EXPECT_TRUE(contains(run->output(), "'3' is not a duration"));
 }
 
+TEST(Run, NeverWritesOverItsLaunchFile) {
+  FakeSession session;
+  for (const char* option : {"--signals", "--summary"}) {
+    const auto run = session.start({option, session.launch_file()});
+    EXPECT_EQ(end_of(*run), 2);
+    EXPECT_TRUE(contains(run->output(), std::string("FILE and ") + option + " name the same file"))
+        << run->output();
+  }
+  EXPECT_EQ(end_of(*session.start({"--dry-run"})), 0) << "it still is a launch file";
+}
+
 TEST(Run, ShowsWhatAllNodesObjectToAndStartsNone) {
   FakeSession session;
   session.check("sim", "error scene.yaml:3:1: error: no mass;exit 2");

@@ -356,11 +356,13 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
       {{scene, "--duration", "1s", "--events", path("./x"), "--wav", path("x")},
        "name the same file"},
       {{scene, "--duration", "1s", "--save-state", scene}, "--save-state would overwrite"},
+      {{scene, "--duration", "1s", "--csv", scene}, "--csv would overwrite its own file"},
   };
   for (const auto& [words, sentence] : cases) {
     EXPECT_EQ(run(words), kBadInput) << sentence;
     EXPECT_THAT(error_, HasSubstr(sentence));
   }
+  EXPECT_EQ(text_of("fall.yaml"), kFalling);
 }
 
 TEST_F(Simulate, CtrlCEndsASceneThatSettlesForLong) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "cli/command_line.h"
 #include "cli/export/export.h"
 #include "idl/gesture.h"
 #include "idl/inputs.h"
@@ -209,6 +210,21 @@ TEST_F(TakeExport, HasTheDevicesOfATakeThatBeginsInMidSession) {
             "0.003,3,0.3,-3\n0.004,4,0.4,-4\n");
   EXPECT_THAT(result.losses,
               testing::ElementsAre("the take begins late: its first row is at 0.003 s"));
+}
+
+TEST_F(TakeExport, NeverWritesOverTheTake) {
+  const std::string before = text_of("take.mcap");
+  std::filesystem::create_symlink(path("take.mcap"), path("link.csv"));
+  const mcap::Reader take(path("take.mcap"));
+  for (const auto file : {&ExportOptions::csv_file, &ExportOptions::npz_file,
+                          &ExportOptions::wav_file, &ExportOptions::events_file}) {
+    for (const std::string& name : {path("take.mcap"), path("./take.mcap"), path("link.csv")}) {
+      ExportOptions options;
+      options.*file = name;
+      EXPECT_THROW(export_take(take, options), UsageError) << name;
+    }
+  }
+  EXPECT_EQ(text_of("take.mcap"), before);
 }
 
 TEST_F(TakeExport, TakesAPartOfTheTime) {

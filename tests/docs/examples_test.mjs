@@ -8,6 +8,7 @@
 //   yaml launch    a whole launch file   yaml nodes        its nodes        yaml device   a device file
 //   yaml change    what the tutorial changes in the scene before; tests/scene/tutorial_test.cpp plays it
 //   c              a program for a board
+//   python         a program that reads a take, or a table of it
 //   text           a drawing or the words of a program
 // A path after it is where the reader writes the file.
 //
@@ -94,7 +95,7 @@ const isOfTake = (line) => line.includes('.mcap') && !line.startsWith('cordis re
 const ofVerb = (verb) => [...all].filter(([line]) => line.split(' ')[1] === verb);
 
 test('every block of code says what it is', () => {
-  const KINDS = ['sh', 'sh by hand', 'yaml scene', 'yaml scene part', 'yaml launch', 'yaml nodes', 'yaml device', 'yaml change', 'c', 'text'];
+  const KINDS = ['sh', 'sh by hand', 'yaml scene', 'yaml scene part', 'yaml launch', 'yaml nodes', 'yaml device', 'yaml change', 'c', 'python', 'text'];
   for (const { name, kind } of blocks) assert.ok(KINDS.includes(kind), `${name}: a block of '${kind}'`);
   for (const { name } of blocksOf('yaml change')) assert.equal(name, 'docs/tutorial.md');
   for (const document of documents) {
@@ -282,8 +283,8 @@ test('cordis new and schema', async () => {
   }
 });
 
-test('cordis cut, merge, info and recover', async () => {
-  for (const verb of ['cut', 'merge', 'info', 'recover']) {  // a merge takes what a cut has made
+test('cordis cut, merge, info, echo and recover', async () => {
+  for (const verb of ['cut', 'merge', 'info', 'echo', 'recover']) {  // a merge takes what a cut has made
     for (const [line, origin] of ofVerb(verb).filter(([text]) => isOfTake(text))) await runs(line, origin);
   }
 });
@@ -339,6 +340,22 @@ test('cordis export', async () => {
       assert.ok(readFileSync(join(folder, file)).length > 0, `${origin}: ${file}`);
     }
   }
+});
+
+test('Python reads a take, as far as this machine has its packages', async () => {
+  await runs('cordis export take.mcap --npz take.npz', 'a table for Python', [0, 3]);
+  const programs = blocksOf('python');
+  for (const [i, { name, code }] of programs.entries()) {
+    const file = `example_${i}.py`;
+    writeFileSync(join(folder, file), code);
+    const packages = [...code.matchAll(/^(?:import|from) (\w+)/gm)].map(([, word]) => `import ${word}`).join('; ');
+    if ((await shell(`/usr/bin/python3 -c '${packages}'`)).code === 0) {
+      assert.notEqual((await runs(`/usr/bin/python3 ${file}`, name)).trim(), '', `${name}: '${code}' says nothing`);
+    } else if ((await shell('/usr/bin/python3 --version')).code === 0) {
+      await runs(`/usr/bin/python3 -m py_compile ${file}`, name);
+    }
+  }
+  assert.ok(programs.length >= 3);
 });
 
 test('cordis doctor', async () => {

@@ -123,6 +123,92 @@ TEST_F(TakeVerbs, RecoverWritesADamagedSummaryAgain) {
   EXPECT_EQ(mcap::contents_of(file_), whole);
 }
 
+/// A take of one message of each of three topics: lab/count with its schema, lab/bare without, and
+/// one of another encoding.
+std::string write_lab_take(const std::string& file) {
+  mcap::Writer writer(file);
+  const std::uint16_t schema = writer.add_schema(
+      {0, "lab::Count", "omgidl", "module lab { struct Count { unsigned long number; }; };"});
+  const std::uint16_t count = writer.add_channel({0, schema, "lab/count", "cdr", {}});
+  const std::uint16_t bare =
+      writer.add_channel({0, 0, "lab/bare", "cdr", {{"type", "lab::Count"}}});
+  const std::uint16_t text = writer.add_channel({0, 0, "lab/\"text\"", "json", {}});
+  const std::vector<std::byte> payload{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0},
+                                       std::byte{7}, std::byte{0}, std::byte{0}, std::byte{0}};
+  EXPECT_EQ(writer.write({count, 5, 2'000'000'000, 1'500'000'000, payload}),
+            mcap::WriteStatus::kOk);
+  EXPECT_EQ(writer.write({bare, 6, 3'000'000'000, 2'500'000'000, payload}), mcap::WriteStatus::kOk);
+  EXPECT_EQ(writer.write({text, 7, 4'000'000'000, 3'500'000'000, payload}), mcap::WriteStatus::kOk);
+  EXPECT_EQ(writer.close(), mcap::WriteStatus::kOk);
+  return file;
+}
+
+TEST_F(TakeVerbs, EchoPrintsMessagesByTheTypesThatTheTakeDescribes) {
+  const std::string lab = write_lab_take(folder_ / "lab.mcap");
+
+  const Answer yaml = cordis({"echo", lab, "lab/count"});
+  EXPECT_EQ(yaml.code, 0) << yaml.error;
+  EXPECT_EQ(yaml.out,
+            "topic: lab/count\ntime_s: 1.500000000\nsequence: 5\nmessage:\n  number: 7\n---\n");
+  EXPECT_EQ(yaml.error, "");
+  const Answer line = cordis({"echo", lab, "lab/c*", "--format", "ndjson"});
+  EXPECT_EQ(line.out,
+            "{\"topic\":\"lab/count\",\"time_s\":1.500000000,\"sequence\":5,"
+            "\"message\":{\"number\":7}}\n");
+  const Answer cells = cordis({"echo", lab, "lab/count", "--format", "csv"});
+  EXPECT_EQ(cells.out, "time_s,number\n1.500000000,7\n");
+}
+
+TEST_F(TakeVerbs, EchoSaysWhatItCannotPrintAndTakesTypesFromAFile) {
+  const std::string lab = write_lab_take(folder_ / "lab.mcap");
+  const std::string idl = folder_ / "lab.idl";
+  const std::string text = "module lab { struct Count { unsigned long number; }; };";
+  mcap::write_file(idl, {text.begin(), text.end()});
+
+  const Answer all = cordis({"echo", lab});
+  EXPECT_EQ(all.code, 3);
+  EXPECT_NE(all.error.find("lab/bare: the type lab::Count is not known: name a file that defines "
+                           "it with --idl\n"),
+            std::string::npos)
+      << all.error;
+  EXPECT_NE(all.error.find("2 messages left out\n"), std::string::npos) << all.error;
+  EXPECT_EQ(cordis({"echo", lab, "lab/bare"}).code, 1);
+  const Answer named = cordis({"echo", lab, "lab/bare", "--idl", idl});
+  EXPECT_EQ(named.code, 0) << named.error;
+  EXPECT_NE(named.out.find("number: 7"), std::string::npos) << named.out;
+}
+
+TEST_F(TakeVerbs, EchoEndsAfterItsCountAndReadsATornTake) {
+  const std::string lab = folder_ / "many.mcap";
+  {
+    mcap::WriterConfig config;
+    config.chunk_bytes = 200;
+    mcap::Writer writer(lab, config);
+    const std::uint16_t schema = writer.add_schema(
+        {0, "lab::Count", "omgidl", "module lab { struct Count { unsigned long number; }; };"});
+    const std::uint16_t channel = writer.add_channel({0, schema, "lab/count", "cdr", {}});
+    for (std::uint32_t i = 0; i < 40; ++i) {
+      std::vector<std::byte> payload(8);
+      payload[1] = std::byte{1};
+      payload[4] = static_cast<std::byte>(i);
+      EXPECT_EQ(writer.write({channel, i, i, i, payload}), mcap::WriteStatus::kOk);
+    }
+  }
+  const auto lines = [](const Answer& answer) {
+    return std::count(answer.out.begin(), answer.out.end(), '\n');
+  };
+  const Answer three = cordis({"echo", lab, "lab/count", "-n", "3", "--format", "ndjson"});
+  EXPECT_EQ(three.code, 0) << three.error;
+  EXPECT_EQ(lines(three), 3);
+  EXPECT_EQ(lines(cordis({"echo", lab, "--format", "ndjson"})), 40);
+  std::filesystem::resize_file(lab, std::filesystem::file_size(lab) / 2);
+  const Answer torn = cordis({"echo", lab, "--format", "ndjson"});
+  EXPECT_EQ(torn.code, 3);
+  EXPECT_NE(torn.error.find("is damaged"), std::string::npos) << torn.error;
+  EXPECT_GT(lines(torn), 0);
+  EXPECT_LT(lines(torn), 40);
+}
+
 TEST_F(TakeVerbs, MistakesEndInOneSentenceAndChangeNothing) {
   const auto before = mcap::contents_of(file_);
   mcap::write_file(folder_ / "text.mcap", {'h', 'i'});
@@ -134,6 +220,12 @@ TEST_F(TakeVerbs, MistakesEndInOneSentenceAndChangeNothing) {
       {{"info", text}, 2},
       {{"info", "."}, 2},
       {{"check", text}, 2},
+      {{"echo", absent}, 2},
+      {{"echo", text}, 2},
+      {{"echo", file_, "nothing"}, 2},
+      {{"echo", file_, "--format", "csv"}, 2},
+      {{"echo", file_, "--format", "xml"}, 2},
+      {{"echo", file_, "--domain", "3"}, 2},
       {{"recover", absent}, 2},
       {{"recover", text}, 1},
       {{"recover", text, "--output", output_}, 1},

@@ -34,7 +34,7 @@ export interface Viz {
   project(index: number): { x: number; y: number } | null;
   /** Where a place of the scene [m] is on the page [CSS pixels]. */
   screenOf(place: number[]): { x: number; y: number } | null;
-  /** Of the sound as it is played; null while none is. */
+  /** The spectrum of the sound as it is played; null while none is. */
   soundSpectrum(): Spectrum | null;
   /** Red, green and blue of the view at a place on the page, 0..255. */
   pixelAt(x: number, y: number): number[] | null;

@@ -69,7 +69,7 @@ export class SoundPanel {
     this.output.source.port.postMessage(block, [block.samples.buffer]);
   }
 
-  /** Of what is played, before the volume; null while nothing is. */
+  /** The spectrum of what is played, before the volume; null while nothing is. */
   spectrum(): Spectrum | null {
     if (this.output === null) return null;
     const { analyser, context } = this.output;
