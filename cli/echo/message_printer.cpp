@@ -34,9 +34,11 @@ MessagePrinter::MessagePrinter(std::string format, bool is_full)
 
 bool MessagePrinter::print(const PrintedMessage& message) {
   if (message.type == nullptr) {
-    report_once(message.topic, (message.type_name.empty() ? std::string("its type")
-                                                          : "the type " + message.type_name) +
-                                   " is not known: name a file that defines it with --idl");
+    report_once(
+        message.topic,
+        fmt::format("{} is not known: name a file that defines it with --idl",
+                    message.type_name.empty() ? "its type"
+                                              : fmt::format("the type {}", message.type_name)));
     return false;
   }
   try {
@@ -69,7 +71,7 @@ std::string MessagePrinter::text_of(const PrintedMessage& message) {
 
 void MessagePrinter::report_once(const std::string& topic, const std::string& what) {
   if (reported_.insert(topic).second)
-    node::print_text(stderr, "cordis echo: " + topic + ": " + what + "\n");
+    node::print_text(stderr, fmt::format("cordis echo: {}: {}\n", topic, what));
 }
 
 }  // namespace cordis::cli

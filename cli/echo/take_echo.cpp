@@ -6,6 +6,8 @@
 #include <map>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "cli/command_line.h"
 #include "cli/exit_code.h"
 #include "cli/live_output.h"
@@ -83,9 +85,11 @@ void check_topic(const mcap::Reader& take, const std::string& topic) {
     return mcap::matches_topic(entry.second.topic, echoed_topics(topic));
   });
   if (fits) return;
-  throw UsageError(topic.empty() ? take.path().string() + " has no topic"
-                                 : take.path().string() + " has no topic '" + topic +
-                                       "'; `cordis info` lists those that it has");
+  const std::string file = take.path().string();
+  throw UsageError(topic.empty()
+                       ? fmt::format("{} has no topic", file)
+                       : fmt::format("{} has no topic '{}'; `cordis info` lists those that it has",
+                                     file, topic));
 }
 
 }  // namespace
@@ -117,7 +121,7 @@ int echo_take(const TakeEcho& wanted, MessagePrinter& printer) {
     if (!flush_output()) return kSuccess;  // its reader has gone
   }
   for (const std::string& problem : cursor.problems())
-    node::print_text(stderr, "cordis echo: " + problem + "\n");
+    node::print_text(stderr, fmt::format("cordis echo: {}\n", problem));
   if (refused > 0)
     std::fprintf(stderr, "cordis echo: %s left out\n",
                  config::count_text(refused, "message").c_str());

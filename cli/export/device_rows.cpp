@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "cli/numbered_messages.h"
 #include "idl/control.h"
 #include "idl/gesture.h"
@@ -58,7 +60,7 @@ DeviceRows::DeviceRows(const mcap::Reader& take, const TakeScene& scene, ReadLos
 std::vector<Column> DeviceRows::columns() const {
   std::vector<Column> columns;
   for (const Axis& axis : axes_) {
-    const std::string number = "[" + std::to_string(axis.axis) + "]";
+    const std::string number = fmt::format("[{}]", axis.axis);
     columns.push_back({axis.device + ".position" + number, "m"});
     columns.push_back({axis.device + ".force" + number, "N"});
   }

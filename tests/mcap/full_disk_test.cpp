@@ -42,7 +42,9 @@ std::string write_until_full(const std::filesystem::path& path, std::uint64_t li
   if (used > limit || used + kChunk < limit) return "full with " + std::to_string(used) + " bytes";
   if (writer.problem().find("no room") == std::string::npos) return writer.problem();
   if (writer.write({channel, 0, now, now, {}}) != WriteStatus::kFull) return "it goes on";
-  if (writer.add_metadata({"cordis.recorder", {{"stopped", "disk full"}}}) != WriteStatus::kOk)
+  // As many words as the counts of many topics.
+  const std::string words(60'000, 'x');
+  if (writer.add_metadata({"cordis.recorder", {{"stopped", words}}}) != WriteStatus::kOk)
     return "no room for the last words";
   if (writer.close() != WriteStatus::kFull) return "it does not say that it was full";
   if (writer.lost_count() == 0) return "it does not say what was lost";

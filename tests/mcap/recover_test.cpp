@@ -140,6 +140,23 @@ TEST(Recover, KeepsEveryChunkThatAFlippedBitLeavesWhole) {
   EXPECT_GT(losses, 50u);  // most bits lie in chunks
 }
 
+TEST(Check, FindsAFlippedBitInTheRecordsBeforeTheFirstChunk) {
+  const TakeFolder folder;
+  const auto path = folder / "flipped.mcap";
+  for (unsigned seed = 5; seed <= 7; ++seed) {
+    const Original original(folder, seed);
+    std::mt19937 random(seed);
+    ASSERT_GT(original.chunks.front().offset, 100u);
+    for (std::size_t place = 0; place < original.chunks.front().offset;
+         place += 1 + random() % 20) {
+      std::vector<char> flipped = original.bytes;
+      flipped[place] = static_cast<char>(flipped[place] ^ (1 << random() % 8));
+      write_file(path, flipped);
+      EXPECT_FALSE(check_take(path).faults.empty()) << "seed " << seed << ", byte " << place;
+    }
+  }
+}
+
 /// A take without a summary, whose first chunk has the index of one of its channels alone, `times`
 /// times behind the last chunk.
 std::vector<char> with_one_moved_index(const Original& original, int times) {

@@ -44,5 +44,19 @@ TEST(WriterAndReader, GiveBackEveryRandomTake) {
   }
 }
 
+TEST(Writer, NeverReplacesAFileThatCameMeanwhile) {
+  const TakeFolder folder;
+  const auto path = folder / "take.mcap";
+  Writer writer(path);
+  const std::vector<char> others{'o', 't', 'h', 'e', 'r'};
+  write_file(path, others);
+
+  EXPECT_EQ(writer.close(), WriteStatus::kFailed);
+
+  EXPECT_NE(writer.problem().find("take.mcap"), std::string::npos) << writer.problem();
+  EXPECT_EQ(contents_of(path), others);
+  EXPECT_TRUE(Reader(part_of(path)).is_whole()) << "and what was recorded is kept";
+}
+
 }  // namespace
 }  // namespace cordis::mcap

@@ -35,7 +35,7 @@ class LastMessagesTest : public ::testing::Test {
     const auto write = [&](std::uint16_t channel, std::uint8_t key, std::uint8_t value,
                            std::uint64_t time) {
       const std::array<std::byte, 9> data{
-          {{}, {}, {}, {}, std::byte{key}, {}, {}, {}, std::byte{value}}};
+          {{}, {}, {}, {}, std::byte{1}, {}, {}, std::byte{key}, std::byte{value}}};
       mcap::Message message;
       message.channel_id = channel;
       message.log_time_nsec = time;
