@@ -109,7 +109,8 @@ class TakeExport : public testing::Test {
   }
 
   /// One sample of the port, which takes effect in a turn of its own.
-  void put_input(std::uint64_t number, double position) {
+  /// @param lost  inputs that sim_node had no room for
+  void put_input(std::uint64_t number, double position, std::uint64_t lost = 0) {
     msg::InputSample sample;
     sample.number(number + 1);  // of a scene before it
     sample.turn(number - 1);
@@ -123,6 +124,7 @@ class TakeExport : public testing::Test {
     inputs.epoch(5);
     inputs.batch(number);
     inputs.turns(number);
+    inputs.lost(lost);
     inputs.sample().push_back(sample);
     put(msg::TOPIC_INPUTS, "SceneInputs", inputs);
   }
@@ -210,6 +212,43 @@ TEST_F(TakeExport, HasTheDevicesOfATakeThatBeginsInMidSession) {
             "0.003,3,0.3,-3\n0.004,4,0.4,-4\n");
   EXPECT_THAT(result.losses,
               testing::ElementsAre("the take begins late: its first row is at 0.003 s"));
+}
+
+TEST_F(TakeExport, CountsAnswersToDevicesThatAreMissing) {
+  begin("lossy.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0, 4.0});
+  for (const std::uint64_t number : {1u, 2u, 3u, 4u}) {
+    put_input(number, 0.1 * static_cast<double>(number));
+    if (number != 3) put_answer(number, -static_cast<double>(number));
+  }
+  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  const mcap::Reader take(path("lossy.mcap"));
+  ExportOptions options;
+  options.csv_file = path("lossy.csv");
+  const ExportResult result = export_take(take, options);
+  EXPECT_THAT(text_of("lossy.csv"), testing::HasSubstr(",nan\n0.004,4,0.4,-4\n"));
+  EXPECT_THAT(result.losses,
+              testing::ElementsAre("the take lacks 1 answer to devices, which are on "
+                                   "gesture/forces and gesture/positions"));
+}
+
+TEST_F(TakeExport, HasNoValuesOfDevicesBehindInputsThatAreLost) {
+  begin("lost.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0, 4.0});
+  for (const std::uint64_t number : {1u, 2u, 3u, 4u}) {
+    put_input(number, 0.5 * static_cast<double>(number), /*lost=*/number == 3 ? 1 : 0);
+    put_answer(number, -static_cast<double>(number));
+  }
+  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  const mcap::Reader take(path("lost.mcap"));
+  ExportOptions options;
+  options.csv_file = path("lost.csv");
+  const ExportResult result = export_take(take, options);
+  EXPECT_EQ(text_of("lost.csv"),
+            "time [s],bridge [N],keyboard.position[0] [m],keyboard.force[0] [N]\n"
+            "0.001,1,0.5,-1\n0.002,2,1,-2\n0.003,3,nan,nan\n0.004,4,nan,nan\n");
+  EXPECT_THAT(result.losses,
+              testing::ElementsAre("sim_node lost inputs: from there on devices have no values"));
 }
 
 TEST_F(TakeExport, NeverWritesOverTheTake) {

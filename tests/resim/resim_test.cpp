@@ -11,17 +11,20 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "cli/offline/offline_session.h"
 #include "cli/resim/rehash.h"
+#include "cli/verbs.h"
 #include "idl/topics.h"
 #include "node/dds/payload.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/mcap/writer.h"
 #include "sim_node/engine/core/hash_version.h"
+#include "tests/cli/captured_run.h"
 #include "tests/mcap/take_folder.h"
 
 namespace cordis::cli {
@@ -29,11 +32,13 @@ namespace {
 
 const std::string kGolden = CORDIS_GOLDEN_DIR "/";
 
-/// What becomes of the batches of a copy; false leaves one out.
-using Change = std::function<bool(msg::SceneInputs&)>;
+/// What becomes of the messages of a topic in a copy; false leaves one out.
+template <class Message>
+using Change = std::function<bool(Message&)>;
 
-void copy_take(const std::filesystem::path& source, const std::filesystem::path& target,
-               const Change& change) {
+template <class Message>
+void copy_topic(const std::filesystem::path& source, const std::filesystem::path& target,
+                const std::string& topic, const Change<Message>& change) {
   const mcap::Reader take(source);
   mcap::Writer writer(target);
   std::map<std::uint16_t, std::uint16_t> channels;
@@ -45,17 +50,22 @@ void copy_take(const std::filesystem::path& source, const std::filesystem::path&
   mcap::MessageCursor cursor = take.messages();
   for (mcap::Message message; cursor.next(message);) {
     std::vector<std::byte> payload;
-    if (take.channels().at(message.channel_id).topic == msg::TOPIC_INPUTS) {
-      msg::SceneInputs batch;
-      ASSERT_TRUE(dds::decode(message.data, batch));
-      if (!change(batch)) continue;
-      payload = dds::encode(batch);
+    if (take.channels().at(message.channel_id).topic == topic) {
+      Message changed;
+      ASSERT_TRUE(dds::decode(message.data, changed));
+      if (!change(changed)) continue;
+      payload = dds::encode(changed);
       message.data = payload;
     }
     message.channel_id = channels.at(message.channel_id);
     ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
   }
   ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+}
+
+void copy_take(const std::filesystem::path& source, const std::filesystem::path& target,
+               const Change<msg::SceneInputs>& change) {
+  copy_topic<msg::SceneInputs>(source, target, msg::TOPIC_INPUTS, change);
 }
 
 ResimResult resim_of(const std::filesystem::path& take) {
@@ -278,41 +288,116 @@ TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
   EXPECT_EQ(after.findings.frames, before.findings.frames);
 }
 
-/// A second life counts its frames from 1 again.
+/// Writes a take with two lives of sim_node, of which the second counts its frames from 1 again.
+/// @param missing  so many batches of inputs at the beginning of the first life are not there
+void write_two_lives(const std::filesystem::path& target, std::uint64_t missing) {
+  const mcap::Reader once(kGolden + "realtime_key.mcap");
+  mcap::Writer writer(target);
+  std::map<std::uint16_t, std::uint16_t> channels;
+  for (const auto& [id, channel] : once.channels()) {
+    mcap::Channel copy = channel;
+    copy.schema_id = 0;
+    channels[id] = writer.add_channel(copy);
+  }
+  for (const std::uint64_t life : {0u, 1u}) {
+    mcap::MessageCursor cursor = once.messages();
+    for (mcap::Message message; cursor.next(message);) {
+      std::vector<std::byte> payload(message.data.begin(), message.data.end());
+      const std::string& topic = once.channels().at(message.channel_id).topic;
+      if (msg::SceneInputs batch; topic == msg::TOPIC_INPUTS) {
+        ASSERT_TRUE(dds::decode(message.data, batch));
+        if (life == 0 && batch.batch() <= missing) continue;
+        batch.epoch(batch.epoch() + life);
+        payload = dds::encode(batch);
+      }
+      if (msg::SceneFrame frame; topic == msg::TOPIC_FRAME) {
+        ASSERT_TRUE(dds::decode(message.data, frame));
+        frame.epoch(frame.epoch() + life);
+        payload = dds::encode(frame);
+      }
+      message.data = payload;
+      message.log_time_nsec += life * 10'000'000'000;
+      message.channel_id = channels.at(message.channel_id);
+      ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
+    }
+  }
+  ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
+}
+
+TEST(Resim, TakesTheFirstLifeThatIsThereFromItsBeginning) {
+  const mcap::TakeFolder folder;
+  write_two_lives(folder / "twice.mcap", /*missing=*/3);
+
+  const ResimResult result = resim_of(folder / "twice.mcap");
+
+  EXPECT_TRUE(result.is_equal());
+  EXPECT_EQ(result.loss, "");
+  EXPECT_EQ(result.other_lives, 1u);
+}
+
+TEST(Resim, AFrameOfAStepThatIsNotPassedIsADifference) {
+  const mcap::TakeFolder folder;
+  int changes = 0;
+  copy_topic<msg::SceneFrame>(kGolden + "realtime_key.mcap", folder / "step.mcap", msg::TOPIC_FRAME,
+                              [&](msg::SceneFrame& frame) {
+                                if (frame.frame() == 10) frame.step(frame.step() + 1);
+                                changes += frame.frame() == 10 ? 1 : 0;
+                                return true;
+                              });
+  ASSERT_EQ(changes, 1);
+
+  const ResimResult result = resim_of(folder / "step.mcap");
+
+  EXPECT_EQ(result.findings.unmatched, 1u);
+  EXPECT_EQ(result.findings.equal, result.findings.frames);
+  EXPECT_FALSE(result.is_equal());
+}
+
+/// Exit code and output of `cordis resim`.
+std::pair<int, std::string> resim_verb(std::vector<std::string> words) {
+  CommandLine line("cordis", "summary", "1.2.3");
+  add_verbs(line);
+  words.insert(words.begin(), "resim");
+  std::string out;
+  std::string error;
+  const int code = run_captured(line, words, out, error);
+  return {code, out + error};
+}
+
+TEST(Resim, EndsWithACodeThatSaysWhatWasFound) {
+  const mcap::TakeFolder folder;
+  const std::string whole = kGolden + "realtime_key.mcap";
+  const std::string gap = (folder / "gap.mcap").string();
+  copy_take(whole, gap, [](const msg::SceneInputs& batch) { return batch.batch() != 20; });
+  const std::string old = (folder / "old.mcap").string();
+  copy_take(whole, old, [](msg::SceneInputs& batch) {
+    batch.hash_version(engine::kHashVersion + 1);
+    return true;
+  });
+  const std::string changed = (folder / "changed.mcap").string();
+  copy_take(whole, changed, [](msg::SceneInputs& batch) {
+    for (msg::InputSample& sample : batch.sample()) sample.value()[0] += 1e-6;
+    return true;
+  });
+  struct Case {
+    std::string take;
+    int code;
+    int expecting;  // with --expect
+  };
+  for (const Case& one :
+       {Case{whole, 0, 0}, Case{gap, 3, 1}, Case{old, 0, 1}, Case{changed, 1, 1}}) {
+    const auto [code, text] = resim_verb({one.take});
+    EXPECT_EQ(code, one.code) << text;
+    const auto [expecting, words] = resim_verb({one.take, "--expect"});
+    EXPECT_EQ(expecting, one.expecting) << words;
+    EXPECT_EQ(words.find("--rehash") != std::string::npos, one.take == old) << words;
+  }
+}
+
 TEST(Resim, ATakeWithARestartIsNotRenewed) {
   const mcap::TakeFolder folder;
   const std::filesystem::path twice = folder / "twice.mcap";
-  {
-    const mcap::Reader once(kGolden + "realtime_key.mcap");
-    mcap::Writer writer(twice);
-    std::map<std::uint16_t, std::uint16_t> channels;
-    for (const auto& [id, channel] : once.channels()) {
-      mcap::Channel copy = channel;
-      copy.schema_id = 0;
-      channels[id] = writer.add_channel(copy);
-    }
-    for (const std::uint64_t life : {0u, 1u}) {
-      mcap::MessageCursor cursor = once.messages();
-      for (mcap::Message message; cursor.next(message);) {
-        std::vector<std::byte> payload(message.data.begin(), message.data.end());
-        const std::string& topic = once.channels().at(message.channel_id).topic;
-        if (msg::SceneInputs batch; life == 1 && topic == msg::TOPIC_INPUTS) {
-          ASSERT_TRUE(dds::decode(message.data, batch));
-          batch.epoch(batch.epoch() + 1);
-          payload = dds::encode(batch);
-        }
-        if (msg::SceneFrame frame; life == 1 && topic == msg::TOPIC_FRAME) {
-          ASSERT_TRUE(dds::decode(message.data, frame));
-          frame.epoch(frame.epoch() + 1);
-          payload = dds::encode(frame);
-        }
-        message.data = payload;
-        message.channel_id = channels.at(message.channel_id);
-        ASSERT_EQ(writer.write(message), mcap::WriteStatus::kOk);
-      }
-    }
-    ASSERT_EQ(writer.close(), mcap::WriteStatus::kOk);
-  }
+  write_two_lives(twice, /*missing=*/0);
   const auto bytes = [&twice] {
     std::ifstream file(twice, std::ios::binary);
     return std::string((std::istreambuf_iterator<char>(file)), {});
