@@ -1,13 +1,16 @@
 // tests/record/ask_test.cpp -- the verbs that ask a running session, and how they end.
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "record_node/mcap/reader.h"
 #include "tests/record/count_take.h"
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
@@ -140,6 +143,25 @@ TEST_F(Ask, NamesTheLastTakeOfASessionThatHasEnded) {
              (folder_ / "copy-2.mcap").string() + "\n");
     ends("cordis " + verb + name_ + "_other", 1, "or name its --domain\n");
   }
+}
+
+TEST_F(Ask, RecordsTheTopicsThatAreWantedAndNotExcluded) {
+  const auto topics_with = [this](const std::vector<std::string>& choice) {
+    const std::string take = folder_ / "chosen.mcap";
+    std::filesystem::remove(take);
+    std::vector<std::string> words{kAsked, "record", name_, "-o", take, "--max-duration", "1s"};
+    words.insert(words.end(), choice.begin(), choice.end());
+    ChildProcess recorder(words);
+    EXPECT_NE(recorder.wait(kPatience), -1) << recorder.output();
+    std::set<std::string> topics;
+    const mcap::Reader reader(take);
+    for (const auto& [id, channel] : reader.channels()) topics.insert(channel.topic);
+    return topics;
+  };
+  EXPECT_FALSE(topics_with({"--exclude", "lab/*"}).contains("lab/count"));
+  EXPECT_FALSE(topics_with({"--topics", "node/*"}).contains("lab/count"));
+  const std::set<std::string> count{"lab/count"};
+  EXPECT_TRUE(test::eventually([&] { return topics_with({"--topics", "lab/*"}) == count; }));
 }
 
 TEST_F(Ask, EndsWithoutAWordWhenItsReaderHasGone) {

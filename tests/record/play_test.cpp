@@ -1,5 +1,6 @@
 // tests/record/play_test.cpp -- `cordis play`, and `cordis ctl` on what it plays.
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -138,6 +139,19 @@ TEST_F(Play, BeginsAgainAtTheEndUntilASignalEndsIt) {
   EXPECT_EQ(player.wait(kPatience), 0) << player.output();
   const std::vector<std::uint32_t>& received = listener.received();
   for (std::size_t i = 0; i < received.size(); ++i) ASSERT_EQ(received[i], i % test::kCounted) << i;
+}
+
+TEST_F(Play, GoesAsFastAsItsRateSays) {
+  CountListener listener("count");
+  ChildProcess player(words({"--wait-for-readers", "--rate", "0.001"}));
+  ASSERT_TRUE(listener.receives({0}));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_TRUE(test::eventually(
+      [&] { return std::chrono::steady_clock::now() - begin > std::chrono::seconds(1); }));
+  accepts({"resume"}, "goes on at 0.0");  // 0.1 s of the take are 100 s
+  accepts({"rate", "1000"}, "plays 1000 times as fast");
+  EXPECT_EQ(player.wait(kPatience), 0) << player.output();
+  EXPECT_TRUE(listener.receives(numbers(0, test::kCounted)));
 }
 
 TEST_F(Play, GivesAPartOfTheTakeUnderAnotherName) {
