@@ -79,6 +79,9 @@ std::string fault_of(const msg::SceneDescription& description) {
         return std::size_t{range.first()} + range.count() <= mats;
       }))
     return "a colour of the description reaches past the last MAT";
+  std::size_t coloured = 0;  // else colouring could take hours
+  for (const msg::ColouredRange& range : description.colours()) coloured += range.count();
+  if (coloured > mats) return count_fault("too many coloured MATs", coloured, mats);
   if (!description.link_state_machine().empty() &&
       description.link_state_machine().size() != ends / 2)
     return count_fault("state machines of links in the description",

@@ -14,7 +14,9 @@
 #include <unistd.h>
 
 #include "cli/exit_code.h"
+#include "cli/list/domain_sessions.h"
 #include "cli/session_launch.h"
+#include "cli/session_words.h"
 #include "node/config/launch.h"
 #include "node/runtime_folder.h"
 #include "node/session_registry.h"
@@ -24,6 +26,7 @@ namespace cordis::cli {
 namespace {
 
 struct ListWords {
+  SessionWords domain;  // of a launch file or a number; neither: this host
   bool json = false;
 };
 
@@ -66,7 +69,37 @@ std::string age_text(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
+int list_domain(const ListWords& words) {
+  const SessionAddress address = words.domain.address();
+  const auto sessions = sessions_in_domain(address);
+  if (words.json) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& [session, members] : sessions) {
+      nlohmann::json nodes = nlohmann::json::array();
+      for (const ListedNode& member : members)
+        nodes.push_back({{"node", member.node}, {"host", member.host}});
+      all.push_back({{"session", session}, {"domain", address.domain}, {"nodes", nodes}});
+    }
+    std::puts(all.dump(1).c_str());
+    return kSuccess;
+  }
+  if (sessions.empty()) {
+    std::fputs(fmt::format("no session runs in domain {}\n", address.domain).c_str(), stdout);
+    return kSuccess;
+  }
+  for (const auto& [session, members] : sessions) {
+    std::size_t width = 0;
+    for (const ListedNode& member : members) width = std::max(width, member.node.size());
+    node::print_text(stdout,
+                     fmt::format("session '{}' in DDS domain {}\n", session, address.domain));
+    for (const ListedNode& member : members)
+      node::print_text(stdout, fmt::format("  {:<{}}  on {}\n", member.node, width, member.host));
+  }
+  return kSuccess;
+}
+
 int list(const ListWords& words) {
+  if (!words.domain.session.empty() || !words.domain.domain.empty()) return list_domain(words);
   const auto sessions = node::running_sessions(node::runtime_folder());
   if (words.json) {
     nlohmann::json all = nlohmann::json::array();
@@ -107,12 +140,17 @@ int list(const ListWords& words) {
 
 void add_list_verb(CommandLine& line) {
   auto words = std::make_shared<ListWords>();
-  Verb& verb = line.verb("list", "[--json]", "Print the sessions that run on this host");
-  verb.flag("--json", words->json, "As JSON, with the launch files");
+  Verb& verb = line.verb("list", "[LAUNCH] [--domain N] [--json]", "Print the sessions that run");
+  verb.optional_word("LAUNCH", words->domain.session,
+                     "A launch file: the sessions of its domain and network, on all hosts");
+  verb.option("--domain", "N", words->domain.domain,
+              "The sessions of a DDS domain, those of other users included");
+  verb.flag("--json", words->json, "As JSON; those of this user with their launch files");
   verb.examples(
-      "Those of this user. A session of another user is reached with --domain N.\n\n"
+      "Without LAUNCH and --domain: those of this user on this host.\n\n"
       "Examples:\n"
-      "  cordis list\n");
+      "  cordis list\n"
+      "  cordis list apart.yaml\n");
   verb.action([words] { return list(*words); });
 }
 

@@ -57,7 +57,7 @@ class AnswerDelayHistogram {
 /// sample before it answered it: that is measured here.
 class AnswerDelays {
  public:
-  static constexpr std::size_t kMaxProcesses = 16;  ///< measured at once
+  static constexpr std::size_t kMaxProcesses = 64;  ///< measured at once
   static constexpr double kQuantile = 0.95;
   static constexpr double kGivenUp = 0.02;  ///< [s], or kGivenUpPeriods if longer
   static constexpr double kGivenUpPeriods = 6.0;

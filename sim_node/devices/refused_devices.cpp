@@ -253,7 +253,7 @@ void RefusedDevices::evaluate(std::int64_t now_nsec) {
   if (text != text_ && !text.empty() && event.record(now_nsec))
     spdlog::log(all_wait ? spdlog::level::info : spdlog::level::err, "{}", text);
   if (text != text_ && text.empty() && returns_.record(now_nsec))
-    spdlog::info("every device supports the scene again");
+    spdlog::info("every device supports the scene now");
   const std::lock_guard lock(text_mutex_);
   text_ = std::move(text);
   delay_text_ = std::move(delay_text);

@@ -222,6 +222,12 @@ TEST_F(Network, TwoHostsPlayOneSessionWithEachOthersNodesAndTools) {
   ChildProcess& list = apart.start(TwoHosts::kSecond, {"list"});
   EXPECT_EQ(list.wait(kPatience), 0);
   EXPECT_NE(list.output().find("keyboard,view"), std::string::npos) << list.output();
+  ChildProcess& of_domain = apart.start(TwoHosts::kSecond, {"list", apart.launch_file()});
+  EXPECT_EQ(of_domain.wait(kPatience), 0);
+  for (const char* node : {"session 'apart' in DDS domain 7\n", "(192.168.5.1)\n",
+                           "(192.168.5.2)\n", "  keyboard ", "  sim ", "  view "}) {
+    EXPECT_NE(of_domain.output().find(node), std::string::npos) << of_domain.output();
+  }
 
   second.signal(SIGINT);
   EXPECT_EQ(second.wait(kPatience), 0);

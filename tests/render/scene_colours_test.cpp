@@ -30,8 +30,8 @@ msg::ColouredRange coloured(std::uint32_t first, std::uint32_t count, const Colo
   return range;
 }
 
-constexpr Colour kRed{0xc8, 0x1e, 0x1e};
-constexpr Colour kBlue{0x20, 0x80, 0xff};
+constexpr Colour kGivenRed{0xc8, 0x1e, 0x1e};
+constexpr Colour kGivenBlue{0x20, 0x80, 0xff};
 
 /// Two copies of a part of two masses each, a mass alone, and a fixed point.
 msg::SceneDescription two_copies() {
@@ -92,13 +92,14 @@ TEST(SceneColours, OfTheSceneStandBeforeThoseOfBodiesAndAreNamed) {
             (std::vector<std::string>{"stack " + hex_of(palette.bodies[0]),
                                       "bob " + hex_of(palette.bodies[1])}));
 
-  description.colours({coloured(1, 1, kRed), coloured(3, 1, kRed), coloured(4, 2, kBlue)});
+  description.colours(
+      {coloured(1, 1, kGivenRed), coloured(3, 1, kGivenRed), coloured(4, 2, kGivenBlue)});
   const ScenePainter painter(description, Theme::kDark);
   EXPECT_EQ(names_of(painter),
             (std::vector<std::string>{"stack.ball " + hex_of(palette.bodies[0]),
-                                      "stack.core " + hex_of(readable(kRed, palette)),
-                                      "bob " + hex_of(readable(kBlue, palette)),
-                                      "wall " + hex_of(readable(kBlue, palette))}));
+                                      "stack.core " + hex_of(readable(kGivenRed, palette)),
+                                      "bob " + hex_of(readable(kGivenBlue, palette)),
+                                      "wall " + hex_of(readable(kGivenBlue, palette))}));
   EXPECT_EQ(painter.bodies().back().mark, MatterMark::kFixed);
   EXPECT_FALSE(painter.has_fixed()) << "the wall has a colour of its own";
 }
@@ -107,9 +108,9 @@ TEST(SceneColours, AreDrawn) {
   msg::SceneDescription description = two_copies();
   // A lit ball has a gradient per colour: stack, bob and what is fixed.
   EXPECT_EQ(count_of(svg_of(description), "<radialGradient"), 3u);
-  description.colours({coloured(1, 1, kRed)});
+  description.colours({coloured(1, 1, kGivenRed)});
   EXPECT_EQ(count_of(svg_of(description), "<radialGradient"), 4u);
-  description.colours({coloured(0, 6, kRed)});
+  description.colours({coloured(0, 6, kGivenRed)});
   EXPECT_EQ(count_of(svg_of(description), "<radialGradient"), 1u);
 }
 
@@ -119,11 +120,11 @@ TEST(SceneColours, OfASurfaceAreThoseOfItsFaces) {
       {test::surface("wall", msg::SURFACE_BOX, {0.5, 0.0, 0.0}, {}, {0.1, 0.1, 0.0})});
   const ScenePainter plain(description, Theme::kLight);
   EXPECT_TRUE(plain.has_surfaces());
-  description.colours({coloured(5, 1, kRed)});
+  description.colours({coloured(5, 1, kGivenRed)});
   const ScenePainter painter(description, Theme::kLight);
   EXPECT_FALSE(painter.has_surfaces()) << "it is named by itself";
   EXPECT_EQ(painter.bodies().back().mark, MatterMark::kSurface);
-  EXPECT_EQ(painter.bodies().back().colour, kRed);
+  EXPECT_EQ(painter.bodies().back().colour, kGivenRed);
   EXPECT_NE(svg_of(description, Theme::kLight).find(">wall<"), std::string::npos);
 }
 

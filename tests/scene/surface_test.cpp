@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "'radius_m' in matter 'a' must be > 0 and <= 1000000, got 0", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: cylinder, center_m: [0, 0], radius_m: 1, ^axis: x}\n",
-                 "unknown key 'axis' in matter 'a'", "known keys: kind, center_m, radius_m"},
+                 "unknown key 'axis' in matter 'a'", "known keys: kind, center_m, radius_m, color"},
         BadScene{kHead1, "matter:\n  a: {kind: ^cylinder, center_m: 0, radius_m: 1}\n",
                  "a cylinder needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{

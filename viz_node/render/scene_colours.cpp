@@ -59,7 +59,7 @@ std::string kind_name(const msg::SceneDescription& description, std::uint32_t ma
   const msg::NamedRange* nearest = nullptr;
   for (const msg::NamedRange& range : description.matter()) {
     if (mat < range.first() || mat - range.first() >= range.count()) continue;
-    if (nearest == nullptr || range.count() <= nearest->count()) nearest = &range;
+    if (nearest == nullptr || range.count() < nearest->count()) nearest = &range;
   }
   std::string name;
   bool is_number = false;

@@ -1,0 +1,62 @@
+// cli/list/domain_sessions.cpp
+#include "cli/list/domain_sessions.h"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+
+#include "cli/topic_listener.h"
+#include "idl/control.h"
+#include "idl/topics.h"
+#include "node/dds/payload.h"
+#include "node/stop.h"
+
+namespace cordis::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kLook = std::chrono::milliseconds(100);
+constexpr auto kAfterTheFirst = std::chrono::milliseconds(1500);  // a status comes twice a second
+constexpr auto kLongestLook = std::chrono::seconds(5);
+
+/// The session that a writer of another participant belongs to; empty when it is none of Cordis.
+std::string session_of(const dds::WriterId& writer, const std::vector<dds::Peer>& peers) {
+  for (const dds::Peer& peer : peers) {
+    if (std::equal(peer.prefix.begin(), peer.prefix.end(), writer.begin()))
+      return peer.name.substr(0, peer.name.find('/'));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::map<std::string, std::vector<ListedNode>> sessions_in_domain(SessionAddress address) {
+  address.session.clear();
+  TopicListener listener(address, msg::TOPIC_STATUS, /*with_bytes=*/true);
+  std::map<std::string, std::map<std::string, std::string>> hosts;  // by session and node
+  auto end = Clock::now() + kLongestLook;
+  while (Clock::now() < end && !node::stop_requested()) {
+    const auto messages = listener.take(kLook);
+    const std::vector<dds::Peer> peers = listener.participant().peers();
+    for (const ReceivedMessage& message : messages) {
+      msg::NodeStatus status;
+      const std::string session = session_of(message.writer, peers);
+      if (session.empty() || !dds::decode(std::as_bytes(std::span(message.bytes)), status))
+        continue;
+      if (hosts.empty()) end = std::min(end, Clock::now() + kAfterTheFirst);
+      if (status.phase() == msg::PHASE_STOPPED) {
+        hosts[session].erase(status.node());
+      } else {
+        hosts[session][status.node()] = status.host();
+      }
+    }
+  }
+  std::map<std::string, std::vector<ListedNode>> sessions;
+  for (const auto& [session, nodes] : hosts) {
+    for (const auto& [node, host] : nodes) sessions[session].push_back({node, host});
+  }
+  return sessions;
+}
+
+}  // namespace cordis::cli
