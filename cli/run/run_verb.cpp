@@ -131,10 +131,11 @@ void add_run_verb(CommandLine& line) {
   verb.action([words] {
     if (!words->record.empty()) record_into(words->record, words->options);
     if (!words->duration.empty()) words->options.duration = parse_duration(words->duration);
-    refuse_shared_files({{"FILE", words->options.launch_file},
-                         {"--signals", words->options.signals_file},
-                         {"--summary", words->options.summary_file},
-                         {"--record", words->record}});
+    const NamedFile signals{"--signals", words->options.signals_file};
+    const NamedFile summary{"--summary", words->options.summary_file};
+    const NamedFile take{"--record", words->record};
+    refuse_shared_files({{"FILE", words->options.launch_file}, signals, summary, take});
+    refuse_yaml_files({signals, summary, take});
     return run(words->options);
   });
 }

@@ -43,6 +43,16 @@ void refuse_shared_files(const std::vector<NamedFile>& files) {
   }
 }
 
+void refuse_yaml_files(const std::vector<NamedFile>& outputs) {
+  for (const NamedFile& file : outputs) {
+    const std::filesystem::path path = file.path;
+    std::error_code failure;
+    if ((path.extension() == ".yaml" || path.extension() == ".yml") &&
+        std::filesystem::exists(path, failure))
+      throw UsageError(file.word + " would overwrite the YAML file " + file.path);
+  }
+}
+
 void refuse_shared_files(const TableOptions& options, const NamedFile& read,
                          const std::string& summary_file, const std::string& state_file) {
   const std::vector<NamedFile> files{
@@ -55,6 +65,7 @@ void refuse_shared_files(const TableOptions& options, const NamedFile& read,
       throw UsageError(file.word + " would overwrite " + read.word + " " + read.path);
   }
   refuse_shared_files(files);
+  refuse_yaml_files({files.begin(), files.end() - 1});  // a state looks at what it replaces
   for (const NamedFile& file : {files[1], files[2]}) {
     if (file.path == "-") throw UsageError(file.word + " wants a file, not stdout");
   }

@@ -36,6 +36,10 @@ struct NamedFile {
 /// @throws UsageError when two words name one file, however they are written
 void refuse_shared_files(const std::vector<NamedFile>& files);
 
+/// A scene, its parts and its devices may lie in any YAML file, and no output is one.
+/// @throws UsageError when a word names a YAML file that is there
+void refuse_yaml_files(const std::vector<NamedFile>& outputs);
+
 /// @param read  the file that the table is of, and what it is: it is never written over
 /// @param summary_file  of --summary, for a verb that has it; else empty
 /// @param state_file  of --save-state, likewise

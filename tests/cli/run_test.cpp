@@ -1,4 +1,5 @@
 // tests/cli/run_test.cpp -- what `cordis run` starts, shows and returns.
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -78,6 +79,13 @@ TEST(Run, NeverWritesOverItsLaunchFile) {
         << run->output();
   }
   EXPECT_EQ(end_of(*session.start({"--dry-run"})), 0) << "it still is a launch file";
+
+  const std::string scene = session.launch_file() + ".scene.yaml";
+  std::ofstream(scene) << "cordis: 1\n";
+  const auto run = session.start({"--signals", scene});
+  EXPECT_EQ(end_of(*run), 2);
+  EXPECT_TRUE(contains(run->output(), "--signals would overwrite the YAML file " + scene));
+  EXPECT_EQ(std::filesystem::file_size(scene), 10u);
 }
 
 TEST(Run, ShowsWhatAllNodesObjectToAndStartsNone) {

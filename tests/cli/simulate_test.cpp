@@ -357,6 +357,8 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
        "name the same file"},
       {{scene, "--duration", "1s", "--save-state", scene}, "--save-state would overwrite"},
       {{scene, "--duration", "1s", "--csv", scene}, "--csv would overwrite its own file"},
+      {{put("other.yaml", kFalling), "--duration", "1s", "--csv", scene},
+       "--csv would overwrite the YAML file"},
   };
   for (const auto& [words, sentence] : cases) {
     EXPECT_EQ(run(words), kBadInput) << sentence;
