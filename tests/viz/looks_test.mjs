@@ -140,7 +140,7 @@ const cases = {
 
   'a click on a key picks its port': async ({ page }) => {
     await page.click('#keyboards button >> nth=2');
-    assert.equal(await textOf(page, '#picked-name'), 'finger');
+    await until('its port is picked', async () => (await textOf(page, '#picked-name')) === 'finger');
     await page.click('#picked-close');
   },
 
