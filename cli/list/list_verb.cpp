@@ -150,7 +150,7 @@ void add_list_verb(CommandLine& line) {
       "Without LAUNCH and --domain: those of this user on this host.\n\n"
       "Examples:\n"
       "  cordis list\n"
-      "  cordis list apart.yaml\n");
+      "  cordis list --domain 5\n");
   verb.action([words] { return list(*words); });
 }
 
