@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
-#include <utility>
+#include <vector>
 
 #include "cli/topic_listener.h"
 #include "idl/control.h"
 #include "idl/topics.h"
 #include "node/dds/payload.h"
-#include "node/stop.h"
 
 namespace cordis::cli {
 namespace {
@@ -31,12 +30,12 @@ std::string session_of(const dds::WriterId& writer, const std::vector<dds::Peer>
 
 }  // namespace
 
-std::map<std::string, std::vector<ListedNode>> sessions_in_domain(SessionAddress address) {
+std::map<std::string, NodeHosts> sessions_in_domain(SessionAddress address) {
   address.session.clear();
   TopicListener listener(address, msg::TOPIC_STATUS, /*with_bytes=*/true);
-  std::map<std::string, std::map<std::string, std::string>> hosts;  // by session and node
+  std::map<std::string, NodeHosts> sessions;
   auto end = Clock::now() + kLongestLook;
-  while (Clock::now() < end && !node::stop_requested()) {
+  while (Clock::now() < end) {
     const auto messages = listener.take(kLook);
     const std::vector<dds::Peer> peers = listener.participant().peers();
     for (const ReceivedMessage& message : messages) {
@@ -44,18 +43,15 @@ std::map<std::string, std::vector<ListedNode>> sessions_in_domain(SessionAddress
       const std::string session = session_of(message.writer, peers);
       if (session.empty() || !dds::decode(std::as_bytes(std::span(message.bytes)), status))
         continue;
-      if (hosts.empty()) end = std::min(end, Clock::now() + kAfterTheFirst);
+      if (sessions.empty()) end = std::min(end, Clock::now() + kAfterTheFirst);
       if (status.phase() == msg::PHASE_STOPPED) {
-        hosts[session].erase(status.node());
+        sessions[session].erase(status.node());
       } else {
-        hosts[session][status.node()] = status.host();
+        sessions[session][status.node()] = status.host();
       }
     }
   }
-  std::map<std::string, std::vector<ListedNode>> sessions;
-  for (const auto& [session, nodes] : hosts) {
-    for (const auto& [node, host] : nodes) sessions[session].push_back({node, host});
-  }
+  std::erase_if(sessions, [](const auto& entry) { return entry.second.empty(); });
   return sessions;
 }
 

@@ -76,8 +76,7 @@ int list_domain(const ListWords& words) {
     nlohmann::json all = nlohmann::json::array();
     for (const auto& [session, members] : sessions) {
       nlohmann::json nodes = nlohmann::json::array();
-      for (const ListedNode& member : members)
-        nodes.push_back({{"node", member.node}, {"host", member.host}});
+      for (const auto& [node, host] : members) nodes.push_back({{"node", node}, {"host", host}});
       all.push_back({{"session", session}, {"domain", address.domain}, {"nodes", nodes}});
     }
     std::puts(all.dump(1).c_str());
@@ -89,11 +88,11 @@ int list_domain(const ListWords& words) {
   }
   for (const auto& [session, members] : sessions) {
     std::size_t width = 0;
-    for (const ListedNode& member : members) width = std::max(width, member.node.size());
+    for (const auto& [node, host] : members) width = std::max(width, node.size());
     node::print_text(stdout,
                      fmt::format("session '{}' in DDS domain {}\n", session, address.domain));
-    for (const ListedNode& member : members)
-      node::print_text(stdout, fmt::format("  {:<{}}  on {}\n", member.node, width, member.host));
+    for (const auto& [name, host] : members)
+      node::print_text(stdout, fmt::format("  {:<{}}  on {}\n", name, width, host));
   }
   return kSuccess;
 }

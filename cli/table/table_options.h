@@ -37,7 +37,7 @@ struct NamedFile {
 void refuse_shared_files(const std::vector<NamedFile>& files);
 
 /// A scene, its parts and its devices may lie in any YAML file, and no output is one.
-/// @throws UsageError when a word names a YAML file that is there
+/// @throws UsageError when a word names an existing YAML file
 void refuse_yaml_files(const std::vector<NamedFile>& outputs);
 
 /// @param read  the file that the table is of, and what it is: it is never written over

@@ -167,9 +167,11 @@ RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
       }
     }
     is_refused = is_refused || !reasons.empty();
-    if (const auto why = wait_reason(device, demand); why && reasons.empty()) {
-      result.waits = true;
-      reasons.push_back(*why);
+    if (reasons.empty()) {
+      if (const auto why = wait_reason(device, demand)) {
+        result.waits = true;
+        reasons.push_back(*why);
+      }
     }
     for (const std::string& reason : reasons)
       result.refusal += (result.refusal.empty() ? "" : "; ") + reason;

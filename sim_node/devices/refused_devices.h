@@ -118,7 +118,7 @@ class RefusedDevices {
     return rows_[index].newest_nsec.load(std::memory_order_relaxed);
   }
 
-  static constexpr std::size_t kMaxKnown = 64;  // sessions have a few devices
+  static constexpr std::size_t kMaxKnown = AnswerDelays::kMaxProcesses;  // as many are measured
 
   double delay_periods_;
   AnswerDelays* delays_;

@@ -38,6 +38,15 @@ class TakeExport : public testing::Test {
   }
   ~TakeExport() override { std::filesystem::remove_all(folder_); }
 
+  /// Ends the take NAME.mcap and exports it. @return what is in NAME.csv
+  ExportResult close_and_export(const std::string& name) {
+    EXPECT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+    const mcap::Reader take(path(name + ".mcap"));
+    ExportOptions options;
+    options.csv_file = path(name + ".csv");
+    return export_take(take, options);
+  }
+
   /// Begins a take with the description of its scene, which may have a port.
   void begin(const std::string& name, bool has_port = false) {
     writer_ = std::make_unique<mcap::Writer>(path(name));
@@ -202,11 +211,7 @@ TEST_F(TakeExport, HasTheDevicesOfATakeThatBeginsInMidSession) {
   put_input(4, 0.4);
   put_answer(3, -3.0);
   put_answer(4, -4.0);
-  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
-  const mcap::Reader take(path("joined.mcap"));
-  ExportOptions options;
-  options.csv_file = path("joined.csv");
-  const ExportResult result = export_take(take, options);
+  const ExportResult result = close_and_export("joined");
   EXPECT_EQ(text_of("joined.csv"),
             "time [s],bridge [N],keyboard.position[0] [m],keyboard.force[0] [N]\n"
             "0.003,3,0.3,-3\n0.004,4,0.4,-4\n");
@@ -221,11 +226,7 @@ TEST_F(TakeExport, CountsAnswersToDevicesThatAreMissing) {
     put_input(number, 0.1 * static_cast<double>(number));
     if (number != 3) put_answer(number, -static_cast<double>(number));
   }
-  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
-  const mcap::Reader take(path("lossy.mcap"));
-  ExportOptions options;
-  options.csv_file = path("lossy.csv");
-  const ExportResult result = export_take(take, options);
+  const ExportResult result = close_and_export("lossy");
   EXPECT_THAT(text_of("lossy.csv"), testing::HasSubstr(",nan\n0.004,4,0.4,-4\n"));
   EXPECT_THAT(result.losses,
               testing::ElementsAre("the take lacks 1 answer to devices, which are on "
@@ -239,11 +240,7 @@ TEST_F(TakeExport, HasNoValuesOfDevicesBehindInputsThatAreLost) {
     put_input(number, 0.5 * static_cast<double>(number), /*lost=*/number == 3 ? 1 : 0);
     put_answer(number, -static_cast<double>(number));
   }
-  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
-  const mcap::Reader take(path("lost.mcap"));
-  ExportOptions options;
-  options.csv_file = path("lost.csv");
-  const ExportResult result = export_take(take, options);
+  const ExportResult result = close_and_export("lost");
   EXPECT_EQ(text_of("lost.csv"),
             "time [s],bridge [N],keyboard.position[0] [m],keyboard.force[0] [N]\n"
             "0.001,1,0.5,-1\n0.002,2,1,-2\n0.003,3,nan,nan\n0.004,4,nan,nan\n");

@@ -33,6 +33,19 @@ namespace {
 const std::string kGolden = CORDIS_GOLDEN_DIR "/";
 
 /// What becomes of the messages of a topic in a copy; false leaves one out.
+/// Gives the writer the channels of a take, without their schemas. @return their numbers, by those of
+/// the take
+std::map<std::uint16_t, std::uint16_t> copy_channels(const mcap::Reader& take,
+                                                     mcap::Writer& writer) {
+  std::map<std::uint16_t, std::uint16_t> channels;
+  for (const auto& [id, channel] : take.channels()) {
+    mcap::Channel copy = channel;
+    copy.schema_id = 0;
+    channels[id] = writer.add_channel(copy);
+  }
+  return channels;
+}
+
 template <class Message>
 using Change = std::function<bool(Message&)>;
 
@@ -41,12 +54,7 @@ void copy_topic(const std::filesystem::path& source, const std::filesystem::path
                 const std::string& topic, const Change<Message>& change) {
   const mcap::Reader take(source);
   mcap::Writer writer(target);
-  std::map<std::uint16_t, std::uint16_t> channels;
-  for (const auto& [id, channel] : take.channels()) {
-    mcap::Channel copy = channel;
-    copy.schema_id = 0;
-    channels[id] = writer.add_channel(copy);
-  }
+  std::map<std::uint16_t, std::uint16_t> channels = copy_channels(take, writer);
   mcap::MessageCursor cursor = take.messages();
   for (mcap::Message message; cursor.next(message);) {
     std::vector<std::byte> payload;
@@ -220,12 +228,7 @@ TEST(Resim, TimesThatGoBackDoNotChangeTheOrder) {
   const mcap::Reader take(kGolden + "realtime_key.mcap");
   {
     mcap::Writer writer(folder / "back.mcap");
-    std::map<std::uint16_t, std::uint16_t> channels;
-    for (const auto& [id, channel] : take.channels()) {
-      mcap::Channel copy = channel;
-      copy.schema_id = 0;
-      channels[id] = writer.add_channel(copy);
-    }
+    std::map<std::uint16_t, std::uint16_t> channels = copy_channels(take, writer);
     const mcap::Statistics& all = take.statistics();
     const std::uint64_t middle = all.start_nsec + (all.end_nsec - all.start_nsec) / 2;
     mcap::MessageCursor cursor = take.messages();
@@ -293,12 +296,7 @@ TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
 void write_two_lives(const std::filesystem::path& target, std::uint64_t missing) {
   const mcap::Reader once(kGolden + "realtime_key.mcap");
   mcap::Writer writer(target);
-  std::map<std::uint16_t, std::uint16_t> channels;
-  for (const auto& [id, channel] : once.channels()) {
-    mcap::Channel copy = channel;
-    copy.schema_id = 0;
-    channels[id] = writer.add_channel(copy);
-  }
+  std::map<std::uint16_t, std::uint16_t> channels = copy_channels(once, writer);
   for (const std::uint64_t life : {0u, 1u}) {
     mcap::MessageCursor cursor = once.messages();
     for (mcap::Message message; cursor.next(message);) {
