@@ -251,7 +251,7 @@ static void play_in_lockstep(struct device* device) {
         publish(device->writer, &device->sample);  // the same one: it may be lost
         sent_nsec = now_nsec();
       }
-      // A motor does not know that time stands still.
+      // A motor does not know that time is paused.
       if ((double)waited_nsec * 1e-9 > WATCHDOG_S) act(device, WATCHDOG_S);
       explain_silence(device);
       wait_for_message(device->waitset, kLookNsec);

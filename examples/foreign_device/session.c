@@ -207,14 +207,14 @@ void sleep_until(int64_t time_nsec) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL);
 }
 
-static void note_stop(int number) {
+static void request_stop(int number) {
   (void)number;
   stop = 1;
 }
 
 void catch_stop_signals(void) {
-  signal(SIGINT, note_stop);
-  signal(SIGTERM, note_stop);
+  signal(SIGINT, request_stop);
+  signal(SIGTERM, request_stop);
 }
 
 bool stop_requested(void) {

@@ -3,7 +3,7 @@
 set -euo pipefail
 
 cd "$1"
-mapfile -t files < <(find sim_node device_node viz_node record_node node cli tests \( -name node_modules -o -name firmware \) -prune -o \
+mapfile -t files < <(find sim_node device_node viz_node record_node node cli include examples tests \( -name node_modules -o -name firmware \) -prune -o \
   \( -name '*.cpp' -o -name '*.h' \) -print 2>/dev/null | sort)
 ((${#files[@]} > 100)) || { echo "only ${#files[@]} files found in $1"; exit 1; }
 clang-format --dry-run -Werror "${files[@]}" || { echo "mend it with: clang-format -i FILE"; exit 1; }

@@ -4,7 +4,7 @@
 set -euo pipefail
 
 cd "$1"
-mapfile -t files < <(find sim_node device_node viz_node record_node node cli idl tests \( -name node_modules -o -name firmware \) -prune -o \
+mapfile -t files < <(find sim_node device_node viz_node record_node node cli idl include tests \( -name node_modules -o -name firmware \) -prune -o \
   \( -name '*.cpp' -o -name '*.h' -o -name '*.ts' -o -name '*.mjs' -o -name '*.idl' \) -print 2>/dev/null | sort)
 ((${#files[@]} > 100)) || { echo "only ${#files[@]} files found in $1"; exit 1; }
 bad=0
