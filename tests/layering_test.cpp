@@ -158,9 +158,10 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
     {{"cli/"},  // the files beside the folders: what several verbs share
      {"cli/table/"},
      {"cli/ctl/", "cli/export/", "cli/offline/", "cli/run/"},
-     {"cli/scene_source/", "cli/check/", "cli/cut/", "cli/doctor/", "cli/echo/", "cli/get/",
-      "cli/hz/", "cli/info/", "cli/lab/", "cli/list/", "cli/merge/", "cli/play/", "cli/record/",
-      "cli/recover/", "cli/resim/", "cli/simulate/", "cli/test/", "cli/bench/"},
+     {"cli/scene_source/", "cli/check/",  "cli/cut/",      "cli/doctor/", "cli/echo/",
+      "cli/get/",          "cli/hz/",     "cli/info/",     "cli/lab/",    "cli/list/",
+      "cli/merge/",        "cli/new/",    "cli/play/",     "cli/record/", "cli/recover/",
+      "cli/resim/",        "cli/schema/", "cli/simulate/", "cli/test/",   "cli/bench/"},
      {"cli/chronogram/", "cli/film/", "cli/plot/"},
      {"cli/verbs.", "cli/main."}},
 };
@@ -195,6 +196,18 @@ TEST(Layering, NoFileIncludesAFloorAboveItsOwn) {
     }
     EXPECT_GT(checked, 10) << "the floors above " << floors.front().front() << " were not found";
   }
+}
+
+TEST(Layering, EveryFolderOfTheProgramStandsOnAFloorOfItsOwn) {
+  int folders = 0;
+  for (const auto& entry : fs::directory_iterator(kRoot / "cli")) {
+    if (!entry.is_directory()) continue;
+    const std::string folder = "cli/" + entry.path().filename().string() + "/";
+    const auto& floors = kFloors.back();
+    EXPECT_NE(floor_of(floors, folder), floor_of(floors, "cli/")) << folder;
+    ++folders;
+  }
+  EXPECT_GT(folders, 20);
 }
 
 TEST(Layering, EveryQuotedIncludeIsSpelledFromTheRoot) {
