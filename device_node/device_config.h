@@ -18,8 +18,8 @@ namespace cordis::device {
 
 /// What every device has, whoever drives it.
 struct DeviceConfig {
-  std::string
-      name;  ///< what ports of a scene refer to: the node's name, or the device it is `standby_for`
+  std::string name;  ///< what ports of a scene refer to: the node's name, or the device it is
+                     ///< `standby_for`
   std::uint32_t device_id = 0;  ///< hash of the name
   int strength = 10;            ///< among the nodes that play this device
   config::DeviceLimits limits;  ///< as the file declares them, and as they are published

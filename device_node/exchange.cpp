@@ -158,9 +158,9 @@ bool Exchange::sense() noexcept {
 
 void Exchange::end_tick(double age_s) noexcept {
   meter_.count_tick();
-  const PassivityObserver& monitor = force_guard_.energy();
-  meter_.record_energy(role_ == Role::kMass ? monitor.given_j() : -sample_.work_j,
-                       role_ == Role::kMass && monitor.is_damping());
+  const PassivityObserver& observer = force_guard_.energy();
+  meter_.record_energy(role_ == Role::kMass ? observer.given_j() : -sample_.work_j,
+                       role_ == Role::kMass && observer.is_damping());
   if (!present_) force_guard_.let_go();  // a device that comes back is ramped up again
   if (leaving_age_s_ <= 0.0)
     record_phase(answers_.has_any() && age_s < config_.force_guard.watchdog_s);

@@ -1,5 +1,5 @@
 // device_node/passivity_observer.h -- the energy that passes from the motors to the hand, and a
-// brake for a loop that makes energy.
+// damper for a loop that makes energy.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace cordis::device {
 
-/// What the monitor knows of the device, and what it allows. SI units.
+/// What the observer knows of the device, and what it allows. SI units.
 struct PassivitySettings {
   bool active = false;               ///< false: energy is watched, and nothing done about it
   double mass_kg = 0.05;             ///< moving part of one axis, > 0
@@ -19,7 +19,7 @@ struct PassivitySettings {
   double period_s = 0.001;           ///< > 0
 };
 
-/// Energy monitor and, for a device of role mass, capped passivity controller.
+/// Passivity observer and, for a device of role mass, capped passivity controller.
 ///
 /// A force held over a period gives the hand exactly f[n] (x[n+1] - x[n]); of that the viscosity b
 /// of the device takes at least b (x[n+1] - x[n])^2 / T. A force that changes from f0 to f1 at the

@@ -55,7 +55,7 @@ class TakeWriter {
   void loop();
   void attach_plan(std::chrono::milliseconds at_most);
   void write_waiting(std::chrono::milliseconds at_most);
-  bool write(const QueuedSample& sample);
+  [[nodiscard]] bool write(const QueuedSample& sample);
   std::uint16_t channel_of(RecordedWriter& writer);
   std::uint16_t schema_of(const std::string& type);
   void note(mcap::WriteStatus status);

@@ -15,6 +15,9 @@ using namespace std::chrono_literals;
 static_assert(static_cast<int>(config::Clock::kRealtime) == msg::PACE_REALTIME);
 static_assert(static_cast<int>(config::Clock::kLockstep) == msg::PACE_LOCKSTEP);
 static_assert(static_cast<int>(config::Clock::kAsap) == msg::PACE_ASAP);
+static_assert(static_cast<int>(PassedBound::kPartners) == 1);  // as idl/inputs.idl says of `bound`
+static_assert(static_cast<int>(PassedBound::kNumber) == 2);
+static_assert(static_cast<int>(PassedBound::kEnergy) == 3);
 
 constexpr std::size_t kInputsPerBatch = 1024;
 constexpr auto kBatchEvery = 30ms;  // so that a session that outruns time sends no flood of them

@@ -11,11 +11,11 @@ namespace cordis::viz {
 
 /// Where the page is served, and how often it receives what moved.
 struct VizConfig {
-  std::string address =
-      "127.0.0.1";        ///< IPv4 or IPv6 address to listen on; loopback keeps other machines out
-  int port = 8080;        ///< 0 takes any free port
-  double rate_hz = 25.0;  ///< most frames per second that pages get
-  PageRights rights;      ///< of pages
+  std::string address = "127.0.0.1";  ///< IPv4 or IPv6 address to listen on; loopback keeps other
+                                      ///< machines out
+  int port = 8080;                    ///< 0 takes any free port
+  double rate_hz = 25.0;              ///< most frames per second that pages get
+  PageRights rights;                  ///< of pages
 };
 
 /// Reads the keys port, address, rate_hz, scenes and parameters, all optional. What is wrong goes to `problems`.

@@ -32,7 +32,7 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
   if (port.role == scene::Role::kMass) {
     result.min_device_viscosity = plan::min_device_viscosity(result.load, loop);
   } else {
-    // The most limits the step, and what brakes for certain the delay.
+    // The most limits the step, and what damps for certain the delay.
     const double mass = sim::mass_of(scene, port);
     result.largest_hand_stiffness =
         std::min(plan::largest_hand_stiffness(result.load, mass, loop),

@@ -21,8 +21,8 @@ struct ResimOptions {
 
 /// What became of it.
 struct ResimResult {
-  bool has_begun =
-      false;  ///< the inputs reach back to the first step: without it there is `loss` alone
+  bool has_begun = false;  ///< the inputs reach back to the first step: without it there is `loss`
+                           ///< alone
   FrameCheck::By by = FrameCheck::By::kHash;
   FrameFindings findings;
   std::vector<FrameCheck::Computed> computed;

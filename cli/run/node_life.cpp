@@ -49,8 +49,8 @@ bool NodeLife::read_block(Stream stream) {
 /// Reads what a process that has ended left in its pipe. A pipe holds a bounded amount, so this
 /// ends even when a process that escaped from the group goes on writing.
 void NodeLife::finish_output(Stream stream) {
-  constexpr int kBlocksOfAPipe =
-      17;  // 1 MiB, the largest pipe an ordinary user may have, and one more
+  constexpr int kBlocksOfAPipe = 17;  // 1 MiB, the largest pipe an ordinary user may have, and one
+                                      // more
   for (int block = 0; block < kBlocksOfAPipe && read_block(stream); ++block) {
   }
   lines_[static_cast<std::size_t>(stream)].finish(

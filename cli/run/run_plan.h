@@ -37,8 +37,8 @@ struct PlannedNode {
 };
 
 struct RunPlan {
-  std::vector<PlannedNode>
-      nodes;  ///< in the order of their start: recorder, sim, devices, displays
+  std::vector<PlannedNode> nodes;  ///< in the order of their start: recorder, sim, devices,
+                                   ///< displays
   /// Wall time from the moment all nodes run until they are stopped; absent when sim_node ends by
   /// itself or never.
   std::optional<std::chrono::nanoseconds> wall_duration;

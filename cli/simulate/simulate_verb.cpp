@@ -34,8 +34,8 @@ std::string report_of(const SimulateResult& result) {
 }
 
 int run(const SimulateOptions& options) {
-  std::optional<StopSignals>
-      signals;  // once it plays: a scene that loads or settles is ended at once
+  std::optional<StopSignals> signals;  // once it plays: a scene that loads or settles is ended at
+                                       // once
   const SimulateResult result = simulate(options, [&signals] {
     if (!signals) signals.emplace();
     return signals->take();

@@ -29,7 +29,7 @@ void on_crash(int number, siginfo_t* info, void*) {
     // The loop may be in another thread and alive: from here on it writes to nowhere.
     const int device = fcntl(file, F_DUPFD_CLOEXEC, 0);
     if (null_file >= 0) dup2(null_file, file);
-    write_release(device >= 0 ? device : file, armed_frame);
+    static_cast<void>(write_release(device >= 0 ? device : file, armed_frame));
   }
   sigaction(number, &actions_before[static_cast<std::size_t>(number)], nullptr);
   const bool is_fault =

@@ -18,7 +18,7 @@ struct ReleaseFrame {
 /// Writes the frame to the open descriptor of a device. A serial line that takes no more drops
 /// first what waits on it. Waits for nothing; async-signal-safe.
 /// @return whether the system took all of it
-bool write_release(int file, const ReleaseFrame& frame) noexcept;
+[[nodiscard]] bool write_release(int file, const ReleaseFrame& frame) noexcept;
 
 /// From now on each signal that ends a process by its default action (SIGSEGV, SIGABRT, SIGQUIT and
 /// so on) writes the armed frame first, and then does what it did before. Signals with a handler

@@ -173,7 +173,7 @@ bool Wire::send_rest() noexcept {
 }
 
 void Wire::release() noexcept {
-  if (file_ >= 0) write_release(file_, release_);
+  if (file_ >= 0) static_cast<void>(write_release(file_, release_));
   rest_count_ = 0;
 }
 

@@ -54,7 +54,7 @@ class Wire {
   bool is_stream_ = true;  ///< its end is read as no bytes
 
  private:
-  bool send_rest() noexcept;
+  [[nodiscard]] bool send_rest() noexcept;
 
   ReleaseFrame release_;
   std::array<std::uint8_t, 96> rest_{};  // of a message that was taken in part

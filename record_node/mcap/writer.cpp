@@ -17,9 +17,9 @@ namespace {
 
 /// Upper bound of the end of a file, without what it repeats [bytes].
 constexpr std::uint64_t kFixedEnd = 1024;
-constexpr std::uint64_t kCountSize = 10;  // of one channel in a map of counts [bytes]
-constexpr std::uint64_t kIndexSize =
-    128;  // of a chunk index without its channels, at least [bytes]
+constexpr std::uint64_t kCountSize = 10;   // of one channel in a map of counts [bytes]
+constexpr std::uint64_t kIndexSize = 128;  // of a chunk index without its channels, at least
+                                           // [bytes]
 constexpr std::size_t kMaxRecords = std::numeric_limits<std::uint16_t>::max();
 
 }  // namespace

@@ -95,8 +95,8 @@ class Writer {
   std::set<std::uint16_t> chunked_channels_;
   Bytes buffer_;                        // what is written next
   std::uint64_t chunk_begin_nsec_ = 0;  // log time of its first message
-  std::uint64_t repeated_size_ =
-      0;  // what the end repeats of schemas, channels and indexes [bytes]
+  std::uint64_t repeated_size_ = 0;     // what the end repeats of schemas, channels and indexes
+                                        // [bytes]
   std::uint64_t lost_count_ = 0;
   WriteStatus status_ = WriteStatus::kOk;
   std::string problem_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::sim {
 namespace {
 
@@ -12,13 +14,12 @@ using plan::LoadBound;
 using plan::PortLoad;
 
 /// @return true if the damper of this edge is always there, and its outer end does not move along
-bool brakes_for_certain(const plan::LiaisonGraph& graph, const plan::Edge& edge,
-                        std::uint32_t outer) {
+bool surely_damps(const plan::LiaisonGraph& graph, const plan::Edge& edge, std::uint32_t outer) {
   return edge.bounded && edge.liaison.kind == engine::LiaisonKind::kLink &&
          graph.inverse_mass[outer] == 0.0;
 }
 
-/// What brakes each mass of a body from outside [N s/m], in their order.
+/// Viscosity on each mass of a body from outside [N s/m], in their order.
 std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const scene::Port& port,
                                       LoadBound bound) {
   std::vector<bool> is_inside(graph.inverse_mass.size());
@@ -28,8 +29,7 @@ std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const sce
     if (is_inside[edge.mat_a] == is_inside[edge.mat_b]) continue;
     if (edge.liaison.kind == engine::LiaisonKind::kBend) continue;  // its edges bound it from above
     const bool is_a = is_inside[edge.mat_a];
-    if (bound == LoadBound::kMin &&
-        !brakes_for_certain(graph, edge, is_a ? edge.mat_b : edge.mat_a))
+    if (bound == LoadBound::kMin && !surely_damps(graph, edge, is_a ? edge.mat_b : edge.mat_a))
       continue;
     of_mat[is_a ? edge.mat_a : edge.mat_b] += edge.viscosity;
   }
@@ -38,7 +38,7 @@ std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const sce
   return viscosities;
 }
 
-/// The viscosity that brakes the centre of a body [N s/m]. At least: with V = sum s_i v_i, no motion
+/// The viscosity that damps the centre of a body [N s/m]. At least: with V = sum s_i v_i, no motion
 /// loses less than V^2 / sum(s_i^2 / Z_i) [Cauchy and Schwarz]. At most: all masses at one speed.
 double viscosity_of_centre(const plan::LiaisonGraph& graph, const scene::Port& port,
                            LoadBound bound) {
@@ -109,6 +109,7 @@ Vec3 velocity_of(const engine::World& world, const scene::Port& port) noexcept {
 }
 
 void push(engine::World& world, const scene::Port& port, const Vec3& force) noexcept {
+  CORDIS_ASSERT(port.role == scene::Role::kLiaison);
   if (port.body.empty()) {
     world.set_external_force(port.mat, force);
     return;

@@ -11,7 +11,7 @@ namespace cordis::sim {
 double mass_of(const scene::Scene& scene, const scene::Port& port);
 
 /// What hangs on a port, at most or at least, as of plan::port_load(). Of a body: the viscosity is what
-/// brakes its centre, that of liaisons to what does not belong to it, and of the medium: at least, what no motion
+/// damps its centre, that of liaisons to what does not belong to it, and of the medium: at least, what no motion
 /// within the body escapes, 0 where a mass has none itself. The stiffness is
 /// so large that no mass of the body comes nearer to the limit of the step than the body seems to: a
 /// spring at the centre of mass is never stiffer than one of its share at each mass.

@@ -10,6 +10,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "node/config/yaml_reader.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/run/tick_division.h"
@@ -125,6 +126,7 @@ std::string state_file_text(const scene::Scene& scene, const engine::Snapshot& s
 
 void read_start_state(scene::Scene& scene, config::Problems& problems) {
   if (scene.start_state_file.empty()) return;
+  CORDIS_ASSERT(scene.network.step > 0.0 && scene.step_rate_hz > 0.0);
   const std::filesystem::path file =
       std::filesystem::path(scene.file).parent_path() / scene.start_state_file;
   const std::size_t errors_before = problems.error_count();

@@ -160,8 +160,8 @@ class DeviceExchange {
   double hand_work_ = 0.0;           // what the hand had given there [J]
   bool has_new_ = false;
   bool restarted_ = false;  // it is the first of another process, or its numbers restart
-  bool new_work_ =
-      false;  // what it reports of its work does not follow from what it reported before
+  bool new_work_ = false;   // what it reports of its work does not follow from what it reported
+                            // before
   bool after_gap_ = false;  // it is the first after a gap of kDisconnectedAfter
   bool is_supported_ = true;
   bool is_expected_ = false;  // it was there in a tick, and it has not been let go of since

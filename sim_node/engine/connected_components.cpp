@@ -54,7 +54,7 @@ ConnectedComponents::ConnectedComponents(const NetworkDescription& network,
     }
   }
   parent_.resize(mat_.size());
-  piece_.resize(mat_.size());
+  component_.resize(mat_.size());
   found_.resize(count_p_ + kPairBatch);
   position_.resize(4 * (mat_.size() + kPairBatch), 0.0);
 }
@@ -77,7 +77,7 @@ std::size_t ConnectedComponents::find_near(const Columns& positions, double dist
   } else {
     join_found(distance);
   }
-  return number_pieces();
+  return number_components();
 }
 
 void ConnectedComponents::join_kept(double distance) noexcept {
@@ -120,13 +120,13 @@ void ConnectedComponents::join_found(double distance) noexcept {
 std::size_t ConnectedComponents::find_bound(std::span<const BoundPair> pairs) noexcept {
   begin();
   for (const BoundPair& pair : pairs) join(pair);
-  return number_pieces();
+  return number_components();
 }
 
 std::size_t ConnectedComponents::find_bound(const World& world, std::size_t set) noexcept {
   begin();
   join_bound(world, set);
-  return number_pieces();
+  return number_components();
 }
 
 void ConnectedComponents::join_bound(const World& world, std::size_t set) noexcept {
@@ -146,7 +146,7 @@ std::size_t ConnectedComponents::find_joined(const World& world,
     CORDIS_ASSERT(link < links.size());
     if (!is_idle(world, link)) join(BoundPair{links[link].mat_a, links[link].mat_b});
   }
-  return number_pieces();
+  return number_components();
 }
 
 void ConnectedComponents::join(const BoundPair& pair) noexcept {
@@ -174,12 +174,12 @@ void ConnectedComponents::join(std::uint32_t a, std::uint32_t b) noexcept {
   parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
 }
 
-/// The root of a piece is its first member, so that its number is known to all later ones.
-std::size_t ConnectedComponents::number_pieces() noexcept {
+/// The root of a component is its first member, so that its number is known to all later ones.
+std::size_t ConnectedComponents::number_components() noexcept {
   std::uint32_t count = 0;
   for (std::uint32_t m = 0; m < parent_.size(); ++m) {
     const std::uint32_t root = root_of(m);
-    piece_[m] = root == m ? count++ : piece_[root];
+    component_[m] = root == m ? count++ : component_[root];
   }
   return count;
 }

@@ -1,4 +1,4 @@
-// sim_node/engine/connected_components.h -- how many pieces the balls of a set form.
+// sim_node/engine/connected_components.h -- how many connected components the balls of a set form.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace cordis::engine {
 
-/// Counts pieces of matter: two members of a set belong to one piece when their pair is near, or
+/// Counts connected components: two members of a set belong to one component when their pair is near, or
 /// bound, or when a chain of such pairs leads from one to the other. A pair is one of the set
 /// liaison: across its two sets, or within its one; of members that no liaison joins it is any two.
 /// [Luc90 IX Experimentation] speaks of matter that shatters and regroups: this number
@@ -36,26 +36,26 @@ class ConnectedComponents {
   /// member goes far: for who asks for the same distance again and again. Allocates.
   void keep_near(double distance);
 
-  /// Finds the pieces of members nearer than a distance [m], > 0. A member that is not finite is a
-  /// piece of its own. Real time: O(members + pairs), no allocation. @return how many
+  /// Finds the components of members nearer than a distance [m], > 0. A member that is not finite is a
+  /// component of its own. Real time: O(members + pairs), no allocation. @return how many
   std::size_t find_near(const Columns& positions, double distance) noexcept;
 
-  /// Finds the pieces of members in bound pairs, such as World::bound_pairs. Real time: O(members +
+  /// Finds the components of members in bound pairs, such as World::bound_pairs. Real time: O(members +
   /// pairs), no allocation. @return how many
   std::size_t find_bound(std::span<const BoundPair> pairs) noexcept;
-  /// Finds the pieces by the bound pairs of a set of a world. Precondition: the set exists.
+  /// Finds the components by the bound pairs of a set of a world. Precondition: the set exists.
   std::size_t find_bound(const World& world, std::size_t set) noexcept;
 
-  /// Finds the pieces of members joined by bound pairs of these sets, and by those of these links with
+  /// Finds the components of members joined by bound pairs of these sets, and by those of these links with
   /// states that are not idle in their present state. Real time: O(members + pairs + links), no
   /// allocation. Precondition: sets and links exist. @return how many
   std::size_t find_joined(const World& world, std::span<const std::uint32_t> sets,
                           std::span<const std::uint32_t> state_links) noexcept;
 
-  /// Number of the piece of a member as last found, from 0 in the order of their first members.
-  std::uint32_t piece_of(std::size_t member) const noexcept {
-    CORDIS_ASSERT(member < piece_.size());
-    return piece_[member];
+  /// Number of the component of a member as last found, from 0 in the order of their first members.
+  std::uint32_t component_of(std::size_t member) const noexcept {
+    CORDIS_ASSERT(member < component_.size());
+    return component_[member];
   }
   /// MATs of the set, P and then Q.
   std::span<const std::uint32_t> members() const noexcept { return mat_; }
@@ -70,7 +70,7 @@ class ConnectedComponents {
   void join(const BoundPair& pair) noexcept;
   void join(std::uint32_t a, std::uint32_t b) noexcept;
   std::uint32_t root_of(std::uint32_t member) noexcept;
-  std::size_t number_pieces() noexcept;
+  std::size_t number_components() noexcept;
 
   std::size_t count_p_;
   bool across_;  // two sets
@@ -79,8 +79,8 @@ class ConnectedComponents {
   CellGrid grid_;
   std::vector<std::uint32_t> mat_;     // of each member
   std::vector<std::uint32_t> member_;  // of each MAT of the set
-  std::vector<std::uint32_t> parent_;  // an earlier member of the same piece, or itself
-  std::vector<std::uint32_t> piece_;
+  std::vector<std::uint32_t> parent_;  // an earlier member of the same component, or itself
+  std::vector<std::uint32_t> component_;
   std::vector<std::uint32_t> found_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches
   std::optional<NeighbourList> kept_;

@@ -5,9 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::sim {
 
 std::string let_go_text(const Simulation& simulation) {
+  CORDIS_ASSERT(simulation.passed_bound() != PassedBound::kNone);
   const std::string done = simulation.has_devices() ? "has let go of the devices: " : "";
   switch (simulation.passed_bound()) {
     case PassedBound::kPartners:

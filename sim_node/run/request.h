@@ -48,7 +48,7 @@ class RequestMailbox {
  public:
   /// Submits a request and waits until it was executed. One thread at a time.
   /// @return false when the loop has ended, and the request was not executed
-  bool submit(Request& request) noexcept;
+  [[nodiscard]] bool submit(Request& request) noexcept;
 
   /// Loop: the request that waits, or nullptr. Real time: takes no lock.
   Request* waiting() const noexcept { return slot_.load(std::memory_order_acquire); }

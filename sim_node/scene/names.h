@@ -28,8 +28,8 @@ struct NameEntry {
   Named kind = Named::kMatter;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
-  bool sound =
-      true;  ///< false: its description has a problem, so that nothing is said about its indices
+  bool sound = true;  ///< false: its description has a problem, so that nothing is said about its
+                      ///< indices
   config::Place place;
   std::uint32_t copies = 0;         ///< of a repeated part: an index counts copies instead of MATs
   bool is_of_liaison = false;       ///< links without a name, called after their liaison

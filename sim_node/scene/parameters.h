@@ -21,8 +21,8 @@ struct Change {
     kMaxwellLinks   ///< likewise
   };
   Kind kind = Kind::kStateMachine;
-  std::uint32_t first =
-      0;  ///< index of the state machine, or of the first link among those of its kind
+  std::uint32_t first = 0;  ///< index of the state machine, or of the first link among those of its
+                            ///< kind
   std::uint32_t count = 1;
   engine::StateMachine state_machine;  ///< of kStateMachine
   std::optional<double> stiffness;     ///< of links [N/m]; as it is when there is none

@@ -77,15 +77,14 @@ struct Port {
   std::string device;           ///< name of the device_node
   std::uint32_t device_id = 0;  ///< its name_hash
   Role role = Role::kMass;      ///< the same in all ports of one device
-  std::uint32_t mat =
-      0;  ///< the MAT at the port: MatKind::kPort in role mass, kMass in role liaison; of a body
-          ///< that mass which is nearest to its centre
-  std::uint32_t tool =
-      0;  ///< the MAT that the scene touches: that at the port, or the tool coupled to it
-  std::vector<BodyMass> body;                ///< the masses of a body; empty: the MAT alone
+  std::uint32_t mat = 0;        ///< the MAT at the port: MatKind::kPort in role mass, kMass in role
+                                ///< liaison; of a body that mass which is nearest to its centre
+  std::uint32_t tool = 0;       ///< the MAT that the scene touches: that at the port, or the tool
+                                ///< coupled to it
+  std::vector<BodyMass> body;   ///< the masses of a body; empty: the MAT alone
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
-  std::vector<std::uint32_t>
-      axes;  ///< of the device, each below config::kMaxAxes, none twice in a scene
+  std::vector<std::uint32_t> axes;  ///< of the device, each below config::kMaxAxes, none twice in a
+                                    ///< scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
   PortNeeds needs;
   config::Place place;  ///< of the port in the scene file
@@ -154,11 +153,11 @@ struct Scene {
   double gesture_rate_hz = 0.0;  ///< exchanges with a device per second
   double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
   engine::NetworkDescription network;  ///< its dimension is the `space` of the file
-  std::vector<NamedRange>
-      matter;  ///< names of MATs in the order of the indices; a port has one MAT
-  std::vector<NamedRange>
-      links;  ///< names of links in the order of their numbers; see docs/language.md
-  std::vector<NamedRange> bends;          ///< names of bends, by their liaison
+  std::vector<NamedRange> matter;  ///< names of MATs in the order of the indices; a port has one
+                                   ///< MAT
+  std::vector<NamedRange> links;   ///< names of links in the order of their numbers; see
+                                   ///< docs/language.md
+  std::vector<NamedRange> bends;   ///< names of bends, by their liaison
   std::vector<std::string> set_names;     ///< per set of the network
   std::vector<config::Place> set_places;  ///< where they are described
   std::vector<LinkGroup> link_groups;     ///< what `links` names, kind by kind
@@ -170,8 +169,8 @@ struct Scene {
   std::vector<LayoutPoint> layout;     ///< per MAT in a 1-D scene, else empty
   std::optional<Subspace> subspace;    ///< by a reduction; then there is no layout
   ReductionOptions reduce;
-  std::string
-      start_state_file;  ///< of a state that a run has saved, as its file names it; may be empty
+  std::string start_state_file;  ///< of a state that a run has saved, as its file names it; may be
+                                 ///< empty
   config::Place start_state_place;
   std::shared_ptr<const engine::Snapshot> start_state;  ///< what it holds, once it has been read
   std::optional<Settle> settle;

@@ -33,12 +33,12 @@ struct Signal : engine::Variable {
   bool is_sound = false;    ///< it is a sound; then it is taken after each step
   double full_scale = 1.0;  ///< of a sound: the value, in its unit, that is the loudest
   double near = 0.0;        ///< of pieces: within which two MATs are one piece [m]; 0: bound
-  std::vector<std::uint32_t> mats;  ///< whose pieces are counted; empty: of a set
-  std::vector<std::uint32_t>
-      state_links;  ///< whose pieces or bonds are counted; empty: of no links
-  std::vector<std::uint32_t>
-      sets;  ///< several liaisons whose pieces or bonds are counted together,
-             ///< and with those of the links; empty: of one set, or of none
+  std::vector<std::uint32_t> mats;         ///< whose pieces are counted; empty: of a set
+  std::vector<std::uint32_t> state_links;  ///< whose pieces or bonds are counted; empty: of no
+                                           ///< links
+  std::vector<std::uint32_t> sets;         ///< several liaisons whose pieces or bonds are counted
+      ///< together, and with those of the links; empty: of one set,
+      ///< or of none
 };
 
 /// Evaluates the signals of a scene.

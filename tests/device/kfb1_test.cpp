@@ -22,6 +22,8 @@
 namespace cordis::device {
 namespace {
 
+static_assert(KFB1_MAX_KEYS == kMaxAxes);
+
 constexpr double kTravel = 0.04;  // [m]
 constexpr double kForce = 10.0;   // largest of a motor [N]
 

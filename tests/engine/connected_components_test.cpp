@@ -61,10 +61,10 @@ TEST(ConnectedComponents, AreThoseOfAFloodFill) {
         const std::size_t count = pieces.find_near(world.positions(), distance);
 
         EXPECT_EQ(count, 1U + *std::max_element(expected.begin(), expected.end()));
-        for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.piece_of(m), expected[m]) << m;
+        for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.component_of(m), expected[m]) << m;
         pieces.keep_near(distance);
         EXPECT_EQ(pieces.find_near(world.positions(), distance), count);
-        for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.piece_of(m), expected[m]) << m;
+        for (std::size_t m = 0; m < 200; ++m) ASSERT_EQ(pieces.component_of(m), expected[m]) << m;
       }
     }
   }
@@ -100,10 +100,10 @@ TEST(ConnectedComponents, OfBoundPairsFollowTheChain) {
   const std::vector<BoundPair> pairs = {{5, 7, 1, 0.0}, {1, 7, 1, 0.0}};
 
   EXPECT_EQ(pieces.find_bound(pairs), 3U);
-  EXPECT_EQ(pieces.piece_of(0), pieces.piece_of(4));  // MATs 1 and 7
-  EXPECT_EQ(pieces.piece_of(0), pieces.piece_of(3));
-  EXPECT_EQ(pieces.piece_of(1), 1U);
-  EXPECT_EQ(pieces.piece_of(2), 2U);
+  EXPECT_EQ(pieces.component_of(0), pieces.component_of(4));  // MATs 1 and 7
+  EXPECT_EQ(pieces.component_of(0), pieces.component_of(3));
+  EXPECT_EQ(pieces.component_of(1), 1U);
+  EXPECT_EQ(pieces.component_of(2), 2U);
   EXPECT_EQ(pieces.find_bound({}), 5U);
 }
 

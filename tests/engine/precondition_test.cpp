@@ -8,9 +8,13 @@
 #include "sim_node/engine/connected_components.h"
 #include "sim_node/engine/idle_state.h"
 #include "sim_node/engine/integrators/modal_block.h"
+#include "sim_node/engine/laws/expression.h"
 #include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/pairs/cell_grid.h"
+#include "sim_node/engine/pairs/pair_block.h"
+#include "sim_node/engine/pairs/pair_friction.h"
 #include "sim_node/engine/pairs/pair_states.h"
+#include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
 
 namespace cordis::engine {
@@ -48,6 +52,11 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
   plane.integrator = IntegratorKind::kModal;
   ConnectedComponents components(world.network().description(), std::vector<std::uint32_t>{0, 1});
   const std::vector<std::uint32_t> no_such_link = {7};
+  const Expression of_speed{test::q(Quantity::kSpeed).program};
+  SetLiaison smooth;
+  NetworkDescription with_set = small_network();
+  PairFriction friction(with_set, smooth, 4, 4);
+  PairBlock no_pairs(2);
   const double nowhere[4] = {test::kNan, 0.0, 0.0, 0.0};
 
   const std::vector<Misuse> misuses = {
@@ -63,6 +72,10 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"mat_count", [&] { world.velocity(2); }},
       {"mat_count", [&] { world.link_force(2); }},
       {"sets", [&] { world.bound_pairs(0); }},
+      {"sets", [&] { world.largest_partners(0); }},
+      {"sets", [&] { world.partners_of(0, 0); }},
+      {"is_potential", [&] { of_speed.potential({}); }},
+      {"acts", [&] { friction.recall(no_pairs); }},
       {"state_links", [&] { is_idle(world, 1); }},
       {"links", [&] { components.find_joined(world, {}, no_such_link); }},
       {"states.size", [&] { table.replace(0, of_three_states); }},

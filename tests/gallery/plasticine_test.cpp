@@ -56,7 +56,7 @@ TEST(Plasticine, IsMouldedTornAndStuckTogetherAgain) {
   engine::ConnectedComponents pieces(session.world().network(), 0);
   ASSERT_EQ(pieces.find_near(session.world().positions(), kReach), 2u);
   std::size_t first = 0;
-  for (std::size_t i = 0; i < 400; ++i) first += pieces.piece_of(i) == 0 ? 1 : 0;
+  for (std::size_t i = 0; i < 400; ++i) first += pieces.component_of(i) == 0 ? 1 : 0;
   EXPECT_GE(std::min(first, 400 - first), 90u);
   EXPECT_LT(in_common(before, neighbours(session)),
             before.size() * 4 / 5);  // what is elastic keeps all

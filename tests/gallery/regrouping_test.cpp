@@ -23,7 +23,7 @@ TEST(Regrouping, ComesApartInTwoHalvesAndIsOneAgain) {
   EXPECT_EQ(count(), 2u);
   std::size_t first = 0;
   for (std::size_t i = 0; i < pieces.members().size(); ++i)
-    first += pieces.piece_of(i) == 0 ? 1 : 0;
+    first += pieces.component_of(i) == 0 ? 1 : 0;
   EXPECT_GE(std::min(first, pieces.members().size() - first), 20u);  // of 50
 
   session.play_until(6.0);  // and pressed together

@@ -59,7 +59,7 @@ std::vector<std::size_t> cluster_sizes(const GallerySession& session) {
   if (balls.empty()) return {};
   engine::ConnectedComponents pieces(session.world().network().description(), balls);
   std::vector<std::size_t> sizes(pieces.find_near(session.world().positions(), kTouch));
-  for (std::size_t i = 0; i < balls.size(); ++i) ++sizes[pieces.piece_of(i)];
+  for (std::size_t i = 0; i < balls.size(); ++i) ++sizes[pieces.component_of(i)];
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return sizes;
 }

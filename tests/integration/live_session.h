@@ -50,8 +50,8 @@ class LiveSession {
   Build build_;
   std::filesystem::path folder_;
   std::map<std::string, std::unique_ptr<ChildProcess>> processes_;
-  std::vector<std::unique_ptr<ChildProcess>>
-      ended_;  // replaced by a restart, kept for their output
+  std::vector<std::unique_ptr<ChildProcess>> ended_;  // replaced by a restart, kept for their
+                                                      // output
   std::unique_ptr<dds::Participant> participant_;
 };
 

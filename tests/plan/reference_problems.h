@@ -20,8 +20,8 @@ struct ReferenceProblem {
   double rate_hz;   // the fixed rate at which errors are shown; order from it and 2, 4 times it
   /// What the reference says: {time, MAT, position along x}, ascending in time.
   std::vector<std::array<double, 3>> expected;
-  double within =
-      1e-8;  // of the reference: more where it is of a limit that the scene comes near [m]
+  double within = 1e-8;  // of the reference: more where it is of a limit that the scene comes near
+                         // [m]
 };
 
 /// One for each of tests/reference but: R02, which is the recurrence of `cordis` itself and not of

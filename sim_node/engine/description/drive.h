@@ -19,12 +19,11 @@ struct NetworkDescription;
 /// times it goes straight from one value to the next; a smooth one goes along cubics whose slopes are
 /// continuous, along each axis never beyond the two values (the slopes are those of Fritsch and Butland).
 struct TimeFunction {
-  std::array<Program, 3>
-      formula;               ///< per axis, of Quantity::kAge alone: here the time since step 0
-                             ///< [s]; empty: 0
-  std::vector<double> time;  ///< of a table [s], each larger than the one before; empty: none
-  std::vector<Vec3> value;   ///< of a table at these times
-  bool smooth = false;       ///< of a table
+  std::array<Program, 3> formula;  ///< per axis, of Quantity::kAge alone: here the time since step
+                                   ///< 0 [s]; empty: 0
+  std::vector<double> time;        ///< of a table [s], each larger than the one before; empty: none
+  std::vector<Vec3> value;         ///< of a table at these times
+  bool smooth = false;             ///< of a table
 };
 
 /// The value at a time [s]; its components may be no finite numbers. The same bits everywhere. Real time:

@@ -26,8 +26,8 @@ namespace cordis::engine {
 /// forces, with all energies in closed form and the works of viscosity at that moment: then the
 /// residual is what finite steps have done, and elastic_error and kinetic_excess are 0.
 struct Energy {
-  double kinetic =
-      0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present position
+  double kinetic = 0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present
+                         ///< position
   double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
   double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
   double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
@@ -40,9 +40,8 @@ struct Energy {
   double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
                                ///< laws of the links store: of order dt^2; 0 for linear links and
                                ///< states in 1 dimension, and at changes of state
-  double kinetic_excess =
-      0.0;               ///< m (v(n-1/2) + v(n+1/2))^2 / 8 over m v(n-1/2) v(n+1/2) / 2 at the
-                         ///< moment of the last forces, less that at step 0
+  double kinetic_excess = 0.0;  ///< m (v(n-1/2) + v(n+1/2))^2 / 8 over m v(n-1/2) v(n+1/2) / 2 at
+                                ///< the moment of the last forces, less that at step 0
   double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
                          ///< the scale for a relative residual
 

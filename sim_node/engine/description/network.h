@@ -123,9 +123,9 @@ struct NetworkDescription {
   int dimension = 3;  ///< 1, 2 or 3
   double step = 0.0;  ///< dt [s], > 0
   IntegratorKind integrator = IntegratorKind::kCordis;
-  Vec3 gravity = Vec3::Zero();  ///< [m/s^2]; components beyond the dimension must be 0
-  double medium_viscosity =
-      0.0;  ///< Z of the medium on masses that say none themselves [N s/m], >= 0
+  Vec3 gravity = Vec3::Zero();    ///< [m/s^2]; components beyond the dimension must be 0
+  double medium_viscosity = 0.0;  ///< Z of the medium on masses that say none themselves [N s/m],
+                                  ///< >= 0
   double freeze_tolerance = 0.0;  ///< masses that rest within it are left out, see Freezing; 0:
                                   ///< none [m]
   std::vector<std::uint32_t> kept_awake;  ///< MATs that never are, since their force is asked for

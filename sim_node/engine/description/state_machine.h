@@ -67,9 +67,9 @@ struct Transition {
   Program when;
   std::uint32_t target = 0;  ///< a state of the state machine; may be the state itself
   RestRule rest = RestRule::kKeep;
-  Program rest_length;  ///< of RestRule::kExpression, otherwise empty
-  Quantity triggered =
-      Quantity::kElongation;  ///< the one an event shows: the first of the condition
+  Program rest_length;                         ///< of RestRule::kExpression, otherwise empty
+  Quantity triggered = Quantity::kElongation;  ///< the one an event shows: the first of the
+                                               ///< condition
 };
 
 /// A liaison with states. In each step, for each link: the quantities; the exits of its present

@@ -92,9 +92,8 @@ struct ContactOfGroups {
 /// One scalar of a network in motion. The conditions of links may ask for it.
 struct Variable {
   VariableKind quantity = VariableKind::kEnergy;
-  std::uint32_t index =
-      0;  ///< of the MAT, of the link in its kind, of the set, of the group, or of
-          ///< the contact of groups
+  std::uint32_t index = 0;  ///< of the MAT, of the link in its kind, of the set, of the group, or
+                            ///< of the contact of groups
   LinkKind kind = LinkKind::kLinear;  ///< of the link
   Vec3 direction = Vec3::Zero();      ///< of a MAT's quantity, unit length
   double offset = 0.0;                ///< subtracted from a position [m]: a port's rest

@@ -11,12 +11,12 @@ namespace cordis::engine {
 /// What one step has to report. Everything is 0 when nothing is wrong.
 struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
-  std::uint32_t refused_inputs =
-      0;  ///< positions and forces from outside that were not finite, since the last step
-  std::uint32_t refused_drives = 0;  ///< values of drives that were not finite: their MATs stayed
-  std::uint32_t drive_jumps = 0;     ///< positions of drives that jumped, see jumps()
-  std::uint32_t overflowed_sets =
-      0;  ///< sets with more pairs in range than there was room for: correct, but slow
+  std::uint32_t refused_inputs = 0;   ///< positions and forces from outside that were not finite,
+                                      ///< since the last step
+  std::uint32_t refused_drives = 0;   ///< values of drives that were not finite: their MATs stayed
+  std::uint32_t drive_jumps = 0;      ///< positions of drives that jumped, see jumps()
+  std::uint32_t overflowed_sets = 0;  ///< sets with more pairs in range than there was room for:
+                                      ///< correct, but slow
   std::uint32_t forgotten_pairs = 0;  ///< pairs of sets whose states found no room
   bool wants_room = false;            ///< World::make_room() is due, before pairs are forgotten
   std::uint32_t lost_events = 0;      ///< changes of state that found no room in events()
@@ -43,9 +43,9 @@ using VisitBoundPair = void (*)(void* owner, const BoundPair& pair);
 struct Snapshot {
   std::uint64_t network = 0;  ///< Network::fingerprint()
   std::uint64_t step = 0;
-  std::vector<double> state;  ///< opaque
-  std::vector<StateMachine>
-      state_machines;  ///< all of them, if one has been replaced; otherwise none
+  std::vector<double> state;                 ///< opaque
+  std::vector<StateMachine> state_machines;  ///< all of them, if one has been replaced; otherwise
+                                             ///< none
 };
 
 }  // namespace cordis::engine

@@ -110,8 +110,8 @@ struct ElementaryFunctions {
   static constexpr double kNan = __builtin_nan("");
   static constexpr double kFirstWhole = 0x1p53;  // from here on every number is even
   static constexpr double kRounder = 0x1.8p52;   // x + it - it is x, rounded to a whole number
-  static constexpr double kLn2High =
-      0x1.62e42feep-1;  // 32 bits: its products with exponents are exact
+  static constexpr double kLn2High = 0x1.62e42feep-1;  // 32 bits: its products with exponents are
+                                                       // exact
   static constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
   static constexpr double kTwoThirdsLow = 0x1.5555555555555p-55;
   // pi / 2 in parts of 33 bits, and the rest: their products with whole numbers up to 2^20 are exact

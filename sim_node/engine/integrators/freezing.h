@@ -98,8 +98,8 @@ class Freezing {
   void list_mats(const MatArray& mats) noexcept;
   void list_movers(MatArray& mats) noexcept;
 
-  std::vector<double>
-      max_push_;  // square of the largest kick_at_half_step at rest; < 0: none [m^2]
+  std::vector<double> max_push_;       // square of the largest kick_at_half_step at rest; < 0: none
+                                       // [m^2]
   std::vector<double> max_moved_;      // square of the largest displacement in a step at rest [m^2]
   std::vector<double> mass_over_dt2_;  // [kg/s^2]; 0 unless a mass
   double max_drift_ = 0.0;             // square of e [m^2]

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/link_runs.h"
 
 namespace cordis::engine {
@@ -264,6 +265,7 @@ Archive WorldState::serialize(Archive archive) {
 }
 
 void WorldState::take(std::span<const double> row) {
+  CORDIS_ASSERT(matches(row));
   serialize(Archive::restoring(row));
   scheme->restored(*this);
   if (freezing) freezing->restored(outside);

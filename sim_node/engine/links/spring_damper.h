@@ -81,14 +81,14 @@ class SpringDamperArray {
 
   MatLayout layout_;
   int dimension_;
-  bool is_1d_;                              // 1 dimension, or vector springs
-  bool viscous_ = false;                    // a link has viscosity
-  std::vector<LinkRun> runs_;               // by axis: all rows; else none
-  std::vector<std::uint8_t> used_rows_;     // by axis: as of LinkArrangement
-  std::vector<std::size_t> equal_;          // by run: where its parameters begin, or kNoneEqual
-  AlignedVector<double> equal_parameters_;  // of runs: 8 times K, 8 times Z / dt, 8 times rest
-  AlignedVector<std::uint32_t>
-      column_a_;  // offset by the MatLayout, of the axis of a vector spring
+  bool is_1d_;                               // 1 dimension, or vector springs
+  bool viscous_ = false;                     // a link has viscosity
+  std::vector<LinkRun> runs_;                // by axis: all rows; else none
+  std::vector<std::uint8_t> used_rows_;      // by axis: as of LinkArrangement
+  std::vector<std::size_t> equal_;           // by run: where its parameters begin, or kNoneEqual
+  AlignedVector<double> equal_parameters_;   // of runs: 8 times K, 8 times Z / dt, 8 times rest
+  AlignedVector<std::uint32_t> column_a_;    // offset by the MatLayout, of the axis of a vector
+                                             // spring
   AlignedVector<std::uint32_t> column_b_;    // all arrays: one per row, a multiple of kLinkBatch
   AlignedVector<double> stiffness_;          // K [N/m]
   AlignedVector<double> viscosity_over_dt_;  // Z / dt [N/m]

@@ -54,13 +54,13 @@ struct StateMachineRows {
   // for (StateTable::needs); what no state asks for may be null. quantity[kElongation], [kForce],
   // [kImpulse] and [kRestLength] are the arrays below.
   const double* quantity[kQuantityCount] = {};
-  const double* elongation_increment =
-      nullptr;              // of the row along its line of centres in this period [m]
-  double dt = 0.0;          // [s]
-  double rate = 0.0;        // 1 / dt [1/s]
-  double now = 0.0;         // step count
-  std::uint32_t still = 0;  // bit i: row i has no direction, hence no tension
-  bool frozen = false;      // no exit is tested: before step 0
+  const double* elongation_increment = nullptr;  // of the row along its line of centres in this
+                                                 // period [m]
+  double dt = 0.0;                               // [s]
+  double rate = 0.0;                             // 1 / dt [1/s]
+  double now = 0.0;                              // step count
+  std::uint32_t still = 0;                       // bit i: row i has no direction, hence no tension
+  bool frozen = false;                           // no exit is tested: before step 0
   // given, and changed
   StateIndex* state = nullptr;
   double* rest_length = nullptr;  // [m]
@@ -128,8 +128,9 @@ struct StateLinkRows {
   bool frozen = false;               // no exit is tested
   bool needs_velocity = false;       // some program asks for it, or for the slip
   bool needs_age = false;
-  void (*on_change)(void* owner, std::size_t first_row, const StateMachineRows& rows) noexcept =
-      nullptr;  // called after a batch in which rows have changed
+  // called after a batch in which rows have changed
+  void (*on_change)(void* owner, std::size_t first_row,
+                    const StateMachineRows& rows) noexcept = nullptr;
   void* owner = nullptr;
 };
 

@@ -105,8 +105,8 @@ class PortInputs {
   std::vector<bool> is_mass_;             // by MAT
   std::vector<Port> ports_;               // in MAT order
   std::vector<std::uint32_t> port_mats_;  // of ports_
-  std::vector<HeldForce>
-      forces_;  // in the order in which the masses were first given one; room for all masses
+  std::vector<HeldForce> forces_;    // in the order in which the masses were first given one; room
+                                     // for all masses
   std::vector<std::uint32_t> slot_;  // by MAT: its place in ports_ or forces_
   std::vector<Push> pushes_;         // in MAT order
   std::uint32_t refused_ = 0;

@@ -25,8 +25,8 @@ struct LinkRows {
   const double* stiffness = nullptr;          // K [N/m]
   const double* viscosity_over_dt = nullptr;  // Z / dt [N/m]
   const double* rest_length = nullptr;        // [m]
-  double* viscous_factor =
-      nullptr;  // viscous force of the last call = factor * vector from a to b [N/m]
+  double* viscous_factor = nullptr;  // viscous force of the last call = factor * vector from a to b
+                                     // [N/m]
   double* elastic_factor = nullptr;  // the same of the elastic force; not in 1 dimension
 };
 
@@ -88,8 +88,8 @@ struct MassColumns {
   const double* dt2_over_mass = nullptr;       // dt^2 / m [s^2/kg], one per MAT
   const double* velocity_retention = nullptr;  // 1 - dt Z / m, with Z of the medium; one per MAT
   double* extrapolated = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
-  double* moved =
-      nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `advance` [m]
+  double* moved = nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `advance`
+                            // [m]
   std::size_t axis_stride = 1;             // as of a MatLayout
   std::size_t axis_count = 3;              // so many components move; by axis alone
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
@@ -138,9 +138,9 @@ struct StepKernel {
   AddLinkForces moment_spring_dampers_3d = nullptr;
   AddLinkForces gathered_springs_by_axis = nullptr;  // in 2 and 3 dimensions; in 1 as by MAT
   AddLinkForces gathered_spring_dampers_by_axis = nullptr;
-  RunLoops runs[3];  // of 1, 2 and 3 dimensions
-  Advance advance =
-      nullptr;  // without a medium: velocity retention is not read, moved_product stays 0
+  RunLoops runs[3];           // of 1, 2 and 3 dimensions
+  Advance advance = nullptr;  // without a medium: velocity retention is not read, moved_product
+                              // stays 0
   Advance advance_in_medium = nullptr;
   Advance advance_by_axis = nullptr;  // for MATs stored by axis
   Advance advance_by_axis_in_medium = nullptr;

@@ -61,6 +61,7 @@ FrictionRows PairFriction::rows() noexcept {
 }
 
 const double* PairFriction::recall(PairBlock& block) noexcept {
+  CORDIS_ASSERT(acts());
   for (const Array which : {kStretchX, kStretchY, kStretchZ, kPhase}) {
     std::fill_n(array(which), block.padded_count(), 0.0);
   }
@@ -89,6 +90,7 @@ const double* PairFriction::recall(PairBlock& block) noexcept {
 FrictionRows PairFriction::step(const PairKernel& kernel, const MemberColumns& members,
                                 const StateIndex* states, StateIndex first_state,
                                 PairBlock& block) noexcept {
+  CORDIS_ASSERT(acts());
   FrictionTerms terms;
   terms.of_all = terms_.front();
   terms.unit_vectors = unit_vectors_;

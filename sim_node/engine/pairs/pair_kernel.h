@@ -52,11 +52,11 @@ struct PairRow {
   double* x = nullptr;              // from a to b [m]
   double* y = nullptr;
   double* z = nullptr;
-  double* square = nullptr;   // of the distance [m^2]
-  double* length = nullptr;   // distance [m]
-  double* inverse = nullptr;  // 1 / length, 0 while it is 0 [1/m]
-  double* elongation_increment =
-      nullptr;  // of the pair along its line of centres in the last period [m]
+  double* square = nullptr;                // of the distance [m^2]
+  double* length = nullptr;                // distance [m]
+  double* inverse = nullptr;               // 1 / length, 0 while it is 0 [1/m]
+  double* elongation_increment = nullptr;  // of the pair along its line of centres in the last
+                                           // period [m]
 };
 
 /// Pairs of several rows, those of one row after those of the other: the arrays of a PairRow, and

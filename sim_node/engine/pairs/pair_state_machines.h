@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/state_kernel.h"
@@ -92,7 +93,10 @@ class PairStateMachines {
     }
   }
   /// Masses of two members. Precondition: they exist.
-  EndMasses masses_of(std::size_t a, std::size_t b) const noexcept { return {mass_[a], mass_[b]}; }
+  EndMasses masses_of(std::size_t a, std::size_t b) const noexcept {
+    CORDIS_ASSERT(a < mass_.size() && b < mass_.size());
+    return {mass_[a], mass_[b]};
+  }
   double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
   /// Pairs of this step that could not be remembered, for lack of room.
   std::uint32_t forgotten() const noexcept { return forgotten_; }

@@ -59,6 +59,7 @@ class SurfaceNeighbours {
   }
   /// Precondition: the ball exists.
   bool is_due(std::size_t ball, const double* place) const noexcept {
+    CORDIS_ASSERT(ball < free_way_.size());
     const double* from = from_.data() + 4 * ball;
     const double x = place[0] - from[0];
     const double y = place[1] - from[1];

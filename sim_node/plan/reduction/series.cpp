@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "node/config/count_text.h"
+#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/reduction/held.h"
 #include "sim_node/plan/reduction/take_out.h"
 
@@ -36,6 +37,7 @@ bool are_alike(const Link& a, const Link& b) noexcept {
 /// Two links in a row as one; nothing when no linear link is that.
 /// Precondition: the first ends where the second begins.
 std::optional<Link> row_of(const Link& first, const Link& second) noexcept {
+  CORDIS_ASSERT(first.mat_b == second.mat_a);
   Link row = first;
   row.mat_b = second.mat_b;
   row.rest_length = first.rest_length + second.rest_length;

@@ -34,13 +34,13 @@ struct Reference {
   std::vector<double> kinetic;        ///< energy per sample [J]
   /// Root of the mean square of the distance of a mass from its mean position [m].
   double amplitude = 0.0;
-  int compared = 0;       ///< samples at which positions mean something
-  bool diverged = false;  ///< why they mean nothing any more: two of the three have diverged
-  bool chaotic = false;   ///< and why these have
-  double uncertainty =
-      0.0;  ///< root of the mean square by which the two differ there, over the amplitude
-  bool by_reference = true;       ///< false: by the scheme itself at a very high rate
-  std::string made_by;            ///< for a person
+  int compared = 0;          ///< samples at which positions mean something
+  bool diverged = false;     ///< why they mean nothing any more: two of the three have diverged
+  bool chaotic = false;      ///< and why these have
+  double uncertainty = 0.0;  ///< root of the mean square by which the two differ there, over the
+                             ///< amplitude
+  bool by_reference = true;  ///< false: by the scheme itself at a very high rate
+  std::string made_by;       ///< for a person
   std::uint64_t evaluations = 0;  ///< of all forces
 
   const double* row(int sample) const noexcept {

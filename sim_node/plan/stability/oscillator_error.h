@@ -9,11 +9,11 @@ namespace cordis::plan {
 /// integrator; K' = w^2 dt^2, Z' = Z dt / m. Of `cordis`: x(n+1) = (2 - K' - Z') x(n) - (1 - Z')
 /// x(n-1).
 struct OscillatorError {
-  bool oscillates =
-      false;            ///< the true motion and that of the scheme do; else pitch and decay are 0
-  bool creeps = false;  ///< both are overdamped and stable; else creep is 0
-  double creep = 0.0;   ///< relative error of the rate of the slower of the two modes
-  double pitch = 0.0;   ///< relative error of the frequency: + is sharp
+  bool oscillates = false;  ///< the true motion and that of the scheme do; else pitch and decay are
+                            ///< 0
+  bool creeps = false;      ///< both are overdamped and stable; else creep is 0
+  double creep = 0.0;       ///< relative error of the rate of the slower of the two modes
+  double pitch = 0.0;       ///< relative error of the frequency: + is sharp
   /// Relative error of the rate of decay; without viscosity the rate that the integrator makes up,
   /// as a part of w.
   double decay = 0.0;

@@ -8,6 +8,8 @@
 #include <queue>
 #include <vector>
 
+#include "sim_node/engine/core/assert.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -54,6 +56,7 @@ Interval operator*(const Interval& u, const Interval& v) {
 }
 /// Precondition: it does not hold 0.
 Interval inverse(const Interval& u) {
+  CORDIS_ASSERT(!holds_zero(u));
   return {1.0 / u.high, 1.0 / u.low};
 }
 

@@ -14,11 +14,11 @@ inline constexpr const char* kBendViscosity = "viscosity_n_m_s_per_rad";
 
 /// What three MATs are joined by: see engine::Bend.
 struct BendLaw {
-  double stiffness = 0.0;   ///< [N m/rad]
-  double viscosity = 0.0;   ///< [N m s/rad]
-  double rest_angle = 0.0;  ///< [rad]
-  std::optional<double>
-      length;  ///< rest length of both sides [m]; that of the start when there is none
+  double stiffness = 0.0;        ///< [N m/rad]
+  double viscosity = 0.0;        ///< [N m s/rad]
+  double rest_angle = 0.0;       ///< [rad]
+  std::optional<double> length;  ///< rest length of both sides [m]; that of the start when there is
+                                 ///< none
 };
 
 /// Reads the keys of a liaison of this kind.

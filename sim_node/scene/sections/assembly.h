@@ -105,14 +105,14 @@ struct Assembly {
   Names names;
   std::vector<MatterLine> lines;  ///< along which matter may bend, in the order of their matter
   std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
-  std::map<std::string, std::vector<std::uint32_t>>
-      sets_of_liaisons;  ///< those without a name, by that of their liaison
+  std::map<std::string, std::vector<std::uint32_t>> sets_of_liaisons;  ///< those without a name, by
+                                                                       ///< that of their liaison
   Parts parts;
-  Placement placement;                  ///< of the part that is being added
-  std::vector<const Part*> open_parts;  ///< from the outermost to it
-  std::optional<config::Colour>
-      colour;                          ///< of what has none itself in the part that is being added
-  std::set<const Part*> faulty_parts;  ///< whose faults have been reported
+  Placement placement;                   ///< of the part that is being added
+  std::vector<const Part*> open_parts;   ///< from the outermost to it
+  std::optional<config::Colour> colour;  ///< of what has none itself in the part that is being
+                                         ///< added
+  std::set<const Part*> faulty_parts;    ///< whose faults have been reported
   std::size_t part_uses = 0;
   std::size_t set_members = 0;
   std::size_t set_surfaces = 0;

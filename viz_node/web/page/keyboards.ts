@@ -4,10 +4,10 @@ import { joined } from './format.ts';
 import type { Description, DeviceShape } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
+import { MAX_AXES } from './wire.ts';
 
 const PRESSED = 0.1; // share of the way down from which on a key is pressed
 const USUAL_WAY_M = 0.005; // down, of a key that does not say
-const MOST_KEYS = 16; // axes of a device
 
 /** A key of a device, and the port that it plays. */
 export interface Key {
@@ -30,7 +30,7 @@ export interface Keyboard {
 export function keyboardsOf({ ports }: Description, devices: DeviceShape[]): Keyboard[] {
   const described = devices.filter(({ name, key_pitch_m: pitch }) => (pitch ?? 0) > 0 && ports.some(({ device }) => device === name));
   return described.map((device) => {
-    const keys = Array.from({ length: Math.min(device.travel_m.length, MOST_KEYS) }, (_, axis) => keyOf(ports, device, axis));
+    const keys = Array.from({ length: Math.min(device.travel_m.length, MAX_AXES) }, (_, axis) => keyOf(ports, device, axis));
     return { name: device.name, pitchM: device.key_pitch_m!, keys };
   });
 }

@@ -1,5 +1,7 @@
 // viz_node/web/page/wire.ts -- numbers of the messages between processes that reach the page as
-// they are: those of idl/scene.idl, under the same names. A test keeps them equal.
+// they are: those of idl/, under the same names. A test keeps them equal.
+
+export const MAX_AXES = 16;
 
 export const LINK_IS_IDLE = 128;
 
