@@ -186,8 +186,8 @@ TEST(AnswerDelays, AreNeverShorterThanTheFastestAnswer) {
 
 TEST(AnswerDelays, AreNeverShorterThanTheSampleWasHere) {
   constexpr std::int64_t kHere = 300'000;  // [ns]
-  constexpr std::uint64_t kBefore =
-      700;  // answers before the first sample: they have numbers of their own
+  constexpr std::uint64_t kBefore = 700;   // answers before the first sample: they have numbers of
+                                           // their own
   Measured measured(1.0);
   for (std::uint64_t n = 1; n <= 2000; ++n) {
     const auto now = static_cast<std::int64_t>(n) * 1'000'000;
