@@ -11,7 +11,6 @@
 #include "node/dds/reader.h"
 #include "node/dds/topics.h"
 #include "node/dds/writer.h"
-#include "node/processor_time.h"
 #include "node/repeated_event.h"
 #include "node/time.h"
 
@@ -40,7 +39,7 @@ class DdsChannel final : public GestureChannel {
 
   bool receive(GestureMessage& answer, nanoseconds at_most) noexcept override {
     const std::int64_t deadline = node::monotonic_nsec() + at_most.count();
-    for (;;) {
+    for (bool has_updated = false;; has_updated = true) {
       const std::uint32_t seen = arrival_.count();
       while (reader_.take(received_)) {
         if (received_.device_id() != device_id_) continue;  // another device of the session
@@ -51,19 +50,23 @@ class DdsChannel final : public GestureChannel {
         }
         return true;
       }
+      if (!has_updated) {
+        arrival_.update();
+        continue;
+      }
       const std::int64_t now = node::monotonic_nsec();
       if (at_most.count() <= 0 || now >= deadline) return false;
       if (is_awaiting_ && poll_.is_on() && now < poll_until_) {
-        const std::int64_t begun = node::thread_processor_nsec();
         arrival_.poll_until(seen, std::min(poll_until_, deadline));
-        polled_nsec_ += node::thread_processor_nsec() - begun;
       } else {
         arrival_.wait_until(seen, deadline);
       }
     }
   }
 
-  double polled_s() const noexcept override { return static_cast<double>(polled_nsec_) * 1e-9; }
+  double polled_s() const noexcept override {
+    return static_cast<double>(arrival_.polled_nsec()) * 1e-9;
+  }
 
  private:
   /// The wait for the answer to the sample sent last is over.
@@ -86,7 +89,6 @@ class DdsChannel final : public GestureChannel {
   std::uint32_t device_id_;
   std::int64_t poll_nsec_;
   std::int64_t poll_until_ = 0;
-  std::int64_t polled_nsec_ = 0;
   bool is_awaiting_ = false;  // the answer to the sample sent last
   AnswerPoll poll_;
   node::RepeatedEvent polls_{"polls for its answers again", spdlog::level::info};

@@ -136,6 +136,7 @@ CommandGuard NodeStart::command_guard() const {
 dds::Participant NodeStart::join_for_force_loop() const {
   dds::ParticipantConfig of_the_loop = config();
   of_the_loop.node += "/loop";
+  of_the_loop.for_loop = true;
   if (launch.clock != config::Clock::kRealtime) return dds::Participant(of_the_loop);
   const InheritedPriority priority(kDdsPriority);
   return dds::Participant(of_the_loop);

@@ -19,7 +19,8 @@ struct RecordedWriter {
   const dds::WriterId id;
   const std::uint32_t number;  ///< its place in the list, from 0
 
-  std::uint64_t last_sequence = 0;         ///< of the threads of DDS
+  bool is_of_loop = false;          ///< a force loop of this host writes it; set when it is added
+  std::uint64_t last_sequence = 0;  ///< of the threads of DDS
   std::atomic<std::uint64_t> messages{0};  ///< that came
   std::atomic<std::uint64_t> bytes{0};     ///< of them
   std::atomic<std::uint64_t> dropped{0};   ///< of them, for want of room or disk

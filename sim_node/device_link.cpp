@@ -89,6 +89,8 @@ std::string DeviceLink::refusal() const {
 }
 
 void DeviceLink::receive(Simulation& simulation, InputLog& inputs) {
+  seen_ = arrival_.count();
+  arrival_.update();
   take_all(position_reader_, position_sample_, held_positions_, simulation, inputs);
   take_all(force_reader_, force_sample_, held_forces_, simulation, inputs);
 }
@@ -200,12 +202,8 @@ void DeviceLink::record_delay(const Sample& sample, const DeviceExchange& device
   }
 }
 
-void DeviceLink::wait_for(const DeviceExchange& device, std::chrono::milliseconds at_most) {
-  if (device.role() == Role::kMass) {
-    position_reader_.wait(at_most);
-  } else {
-    force_reader_.wait(at_most);
-  }
+void DeviceLink::wait(std::chrono::nanoseconds at_most) {
+  arrival_.wait_until(seen_, node::monotonic_nsec() + at_most.count());
 }
 
 void DeviceLink::answer_received(Simulation& simulation) {

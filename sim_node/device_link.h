@@ -55,8 +55,8 @@ class DeviceLink {
   void receive(Simulation& simulation, InputLog& inputs);
   /// Loop, in lockstep: true while a sample of the device waits for the description of its device.
   bool holds_sample_of(const DeviceExchange& device) const;
-  /// Loop: waits for a sample in the role of the device, at most so long.
-  void wait_for(const DeviceExchange& device, std::chrono::milliseconds at_most);
+  /// Loop: waits for what arrives after receive() has begun, at most so long.
+  void wait(std::chrono::nanoseconds at_most);
   /// Loop: counts the samples of all devices, and what else arrives on their topics.
   dds::Arrival& arrival() noexcept { return arrival_; }
   /// Loop: answers every device that has been received; otherwise every device of the scene.
@@ -93,6 +93,7 @@ class DeviceLink {
   std::uint64_t epoch_;
   config::Clock clock_;
   dds::Arrival arrival_;
+  std::uint32_t seen_ = 0;  // messages when receive() began
   dds::Reader<msg::GesturePositions> position_reader_;
   dds::Reader<msg::GestureForces> force_reader_;
   dds::Writer<msg::GesturePositions> position_writer_;

@@ -40,7 +40,7 @@ bool LockstepLoop::receive() {
   for (const DeviceExchange& device : loop_.simulation().devices()) {
     if (device.has_new_sample()) continue;
     if (!loop_.devices().holds_sample_of(device)) report_wait(device);
-    loop_.devices().wait_for(device, kPatience);
+    loop_.devices().wait(kPatience);
     return false;
   }
   waits_since_nsec_ = 0;

@@ -76,7 +76,7 @@ int granted_buffer(int option) {
 }
 
 /// Pairs of ports of a domain that are taken, at an address of this host.
-int taken_pairs(int domain, int count = dds::kMaxParticipants,
+int taken_pairs(int domain, int count = dds::pair_count(true),
                 const std::string& address = "127.0.0.1") {
   int taken = 0;
   for (int index = 0; index < count; ++index) {
@@ -146,13 +146,13 @@ Finding check_socket_buffers() {
 Finding check_dds_ports(int domain) {
   Finding finding{.key = "network.dds_ports", .title = "DDS ports"};
   const int taken = taken_pairs(domain);
-  finding.values = {{"domain", domain}, {"taken", taken}, {"checked", dds::kMaxParticipants}};
+  finding.values = {{"domain", domain}, {"taken", taken}, {"checked", dds::pair_count(true)}};
   finding.text = fmt::format("those of domain {} are free", domain);
   if (taken == 0) return finding;
   finding.level = Level::kWarning;
   finding.text = fmt::format(
       "{} of {} pairs of domain {} are taken, by a session that runs or by another program", taken,
-      dds::kMaxParticipants, domain);
+      dds::pair_count(true), domain);
   const std::optional<int> other = free_domain(domain);
   if (!other) return finding;
   finding.values["free_domain"] = *other;
@@ -185,7 +185,7 @@ Finding check_interface(const std::string& wanted, int domain) {
     return finding;
   }
   const int packet = largest_packet_of(found->name);
-  const int taken = taken_pairs(domain, dds::kMaxRemoteParticipants, found->address);
+  const int taken = taken_pairs(domain, dds::pair_count(false), found->address);
   const bool wireless = std::filesystem::exists("/sys/class/net/" + found->name + "/wireless");
   finding.values.update({{"name", found->name},
                          {"address", found->address},
@@ -197,9 +197,8 @@ Finding check_interface(const std::string& wanted, int domain) {
   finding.text =
       fmt::format("{} ({}), ports of domain {} are free", found->name, found->address, domain);
   if (taken > 0)
-    finding.text =
-        fmt::format("{} ({}), {} of {} pairs of ports of domain {} are taken", found->name,
-                    found->address, taken, dds::kMaxRemoteParticipants, domain);
+    finding.text = fmt::format("{} ({}), {} of {} pairs of ports of domain {} are taken",
+                               found->name, found->address, taken, dds::pair_count(false), domain);
   if (taken > 0) finding.advice = "if that is not a session of yours, use another domain";
   if (packet < kMinPacket) {
     finding.text += fmt::format("; packets of {} bytes at most", packet);

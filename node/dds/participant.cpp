@@ -53,7 +53,12 @@ std::uint64_t Participant::rejoin_count() const noexcept {
 }
 
 Participant::Impl::Impl(const ParticipantConfig& config)
-    : config_(config), presence_(make_presence()), watch_([this] { watch(); }) {}
+    : config_(config),
+      present_socket_(config.for_loop ? std::make_shared<PresentSocket>() : nullptr),
+      presence_(make_presence()) {
+  if (present_socket_ != nullptr) present_socket_->set(presence_->samples());
+  watch_ = std::thread([this] { watch(); });
+}
 
 Participant::Impl::~Impl() {
   {
@@ -137,6 +142,7 @@ bool Participant::Impl::rejoin() noexcept {
     std::unique_ptr<Presence> next = make_presence();
     for (Endpoint* endpoint : endpoints_) endpoint->prepare(*next);
     for (Endpoint* endpoint : endpoints_) endpoint->change_over();
+    if (present_socket_ != nullptr) present_socket_->set(next->samples());
     std::swap(presence_, next);
     ++rejoin_count_;
     return true;

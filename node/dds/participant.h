@@ -24,6 +24,8 @@ struct ParticipantConfig {
   std::uint32_t wire_version = msg::WIRE_VERSION;  ///< that it speaks; another one in tests alone
   bool every_partition = false;  ///< its readers receive from all sessions and all other programs
   Network network{};             ///< the same for all processes of a session on one host
+  bool observes = false;         ///< force loops send to it from another thread, 2 ms later
+  bool for_loop = false;         ///< a thread that waits on an Arrival takes its samples itself
 };
 
 /// What all that a participant owns begins with, in DDS.

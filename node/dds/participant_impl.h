@@ -18,6 +18,7 @@
 
 #include "node/dds/participant.h"
 #include "node/dds/presence.h"
+#include "node/dds/sample_socket.h"
 
 namespace cordis::dds {
 
@@ -46,6 +47,8 @@ struct Participant::Impl {
   std::string mismatch() const;
   bool has_peers_elsewhere() const noexcept { return peers_elsewhere_ > 0; }
   std::uint64_t rejoin_count() const noexcept { return rejoin_count_; }
+  /// Null unless it is for a loop.
+  const std::shared_ptr<PresentSocket>& present_socket() const noexcept { return present_socket_; }
   void drop(const Peer& peer) const noexcept;
 
   /// How much of kFarewell is left. The first call begins it, and drops the readers of processes
@@ -68,6 +71,7 @@ struct Participant::Impl {
   bool rejoin() noexcept;
 
   const ParticipantConfig config_;
+  const std::shared_ptr<PresentSocket> present_socket_;
 
   std::mutex watch_mutex_;  // of the next two
   bool somebody_returned_ = false;

@@ -70,15 +70,29 @@ bool is_free(std::uint16_t port, const std::string& address) noexcept {
   return free;
 }
 
-ParticipantPorts::ParticipantPorts(int domain, const std::string& address) {
+bool is_of_observer(std::uint16_t port, int domain, bool is_loopback) noexcept {
+  const int first = first_observer(is_loopback);
+  return port >= discovery_port(domain, first) &&
+         port < discovery_port(domain, first + kMaxObservers);
+}
+
+bool ParticipantPorts::try_to_take(int domain, const std::string& address, int index) noexcept {
+  discovery_ = discovery_port(domain, index);
+  lock_ = try_to_hold(discovery_);
+  if (lock_ < 0) return false;
+  if (is_free(discovery_, address) && is_free(samples(), address)) return true;
+  close(lock_);
+  return false;
+}
+
+ParticipantPorts::ParticipantPorts(int domain, const std::string& address, bool observes) {
   // A participant with a higher number would be looked for by no other host.
-  const int count = address == "127.0.0.1" ? kMaxParticipants : kMaxRemoteParticipants;
+  const int count = first_observer(address == "127.0.0.1");
+  for (int index = count; observes && index < count + kMaxObservers; ++index) {
+    if (try_to_take(domain, address, index)) return;
+  }
   for (int index = 0; index < count; ++index) {
-    discovery_ = discovery_port(domain, index);
-    lock_ = try_to_hold(discovery_);
-    if (lock_ < 0) continue;
-    if (is_free(discovery_, address) && is_free(samples(), address)) return;
-    close(lock_);
+    if (try_to_take(domain, address, index)) return;
   }
   if (!has_address(address))
     throw std::runtime_error(address +

@@ -51,12 +51,12 @@ void set_discovery(const ParticipantConfig& config, const ParticipantPorts& port
     builtin.discovery_config.m_DiscoveryServers.push_back(server);
     return;
   }
-  const int here = network.is_loopback() ? kMaxParticipants : kMaxRemoteParticipants;
+  const int here = pair_count(network.is_loopback());
   for (int index = 0; index < here; ++index)
     builtin.initialPeersList.push_back(
         locator_of(network.address, discovery_port(config.domain, index)));
   for (const std::string& peer : network.peers) {
-    for (int index = 0; index < kMaxRemoteParticipants; ++index)
+    for (int index = 0; index < pair_count(false); ++index)
       builtin.initialPeersList.push_back(locator_of(peer, discovery_port(config.domain, index)));
   }
   if (!network.multicast) return;
@@ -66,7 +66,8 @@ void set_discovery(const ParticipantConfig& config, const ParticipantPorts& port
 }
 
 fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
-                                           const ParticipantPorts& ports) {
+                                           const ParticipantPorts& ports,
+                                           const std::shared_ptr<TransportLink>& link) {
   using eprosima::fastrtps::Duration_t;
   fast::DomainParticipantQos qos;
   qos.name(config.session + "/" + config.node);
@@ -81,7 +82,8 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   udp->receiveBufferSize = kSocketBufferBytes;
   if (!config.network.is_loopback()) udp->maxMessageSize = kLargestDatagramBytes;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(std::make_shared<UdpTransportDescriptor>(
+      udp, config.network.address, config.domain, ports.samples(), config.for_loop, link));
 
   // On loopback no socket takes multicast, so no datagram of the network reaches a session. Others
   // are found where they can be.
@@ -96,7 +98,7 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   // (PDP::check_remote_participant_liveliness). So no lease ends, and no such timer fires;
   // processes that have ended are dropped by their identity.
   builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
-  builtin.discovery_config.leaseDuration_announcementperiod = Duration_t(0, 300'000'000u);
+  builtin.discovery_config.leaseDuration_announcementperiod = Duration_t(1, 0);
   builtin.discovery_config.initial_announcements.count = 20;
   builtin.discovery_config.initial_announcements.period = Duration_t(0, 10'000'000u);
   return qos;
@@ -149,12 +151,12 @@ Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_else
     : config_(config),
       peers_elsewhere_(peers_elsewhere),
       on_return_(std::move(on_return)),
-      ports_(config.domain, config.network.address) {
+      ports_(config.domain, config.network.address, config.observes) {
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_), this,
+      static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_, link_), this,
       fast::StatusMask::none());
   // Without its interface Fast DDS makes a participant that has no sockets.
   const bool is_bound =
@@ -165,6 +167,7 @@ Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_else
     throw std::runtime_error("DDS could not join domain " + std::to_string(config.domain) + " on " +
                              config.network.address + " (is the interface up?)");
   }
+  link_->is_open.store(true, std::memory_order_release);
   fast::PublisherQos publisher_qos;
   publisher_qos.partition().push_back(config.session.c_str());
   publisher_ = participant_->create_publisher(publisher_qos);

@@ -22,6 +22,7 @@
 #include "node/dds/participant.h"
 #include "node/dds/participant_ports.h"
 #include "node/dds/topics.h"
+#include "node/dds/udp_transport.h"
 #include "node/dds/wire_version.h"
 
 namespace cordis::dds {
@@ -39,6 +40,9 @@ class Presence final : public fast::DomainParticipantListener {
   /// @throws std::runtime_error when DDS refuses.
   Presence(const ParticipantConfig& config, std::atomic<int>& peers_elsewhere,
            std::function<void()> on_return);
+  /// Where a loop takes the samples; null if DDS takes them.
+  const std::shared_ptr<SampleSocket>& samples() const noexcept { return link_->samples; }
+
   /// Deletes all readers and writers too.
   ~Presence() override;
   Presence(const Presence&) = delete;
@@ -107,6 +111,7 @@ class Presence final : public fast::DomainParticipantListener {
   std::atomic<int>& peers_elsewhere_;
   std::function<void()> on_return_;
   ParticipantPorts ports_;
+  const std::shared_ptr<TransportLink> link_ = std::make_shared<TransportLink>();
   fast::DomainParticipant* participant_ = nullptr;
   fast::Publisher* publisher_ = nullptr;
   fast::Subscriber* subscriber_ = nullptr;

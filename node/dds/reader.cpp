@@ -174,6 +174,7 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
 template <class Message>
 Reader<Message>::Reader(Participant& participant, Topic topic, Arrival* arrival)
     : impl_(std::make_unique<Impl>(participant.impl(), topic, arrival)) {
+  if (arrival != nullptr) arrival->attach(participant.impl().present_socket());
   participant.impl().add(*impl_);
 }
 

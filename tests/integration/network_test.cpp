@@ -693,7 +693,7 @@ TEST_F(Network, NoDatagramOfTheNetworkReachesASessionOfOneHost) {
 
   apart.hosts.run_on(TwoHosts::kSecond, [&] {
     const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    for (int index = 0; index < 2 * dds::kMaxParticipants; ++index) {
+    for (int index = 0; index < 2 * dds::pair_count(true); ++index) {
       const sockaddr_in address =
           dds::udp_address(static_cast<std::uint16_t>(dds::discovery_port(kDomain, 0) + index),
                            dds::ipv4_of(TwoHosts::address(TwoHosts::kFirst)));
@@ -702,7 +702,7 @@ TEST_F(Network, NoDatagramOfTheNetworkReachesASessionOfOneHost) {
     }
     close(file);
   });
-  ASSERT_TRUE(eventually([&] { return apart.hosts.passed() >= 2 * dds::kMaxParticipants; }));
+  ASSERT_TRUE(eventually([&] { return apart.hosts.passed() >= 2 * dds::pair_count(true); }));
 
   EXPECT_TRUE(loopback->peers().empty());
 }

@@ -114,10 +114,24 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   EXPECT_EQ(read.surfaces(), description.surfaces());
 }
 
-/// A reader with an Arrival takes samples out of DDS in the thread that receives them.
-TEST(Arrival, CountsTheMessagesOfItsReadersAndWakesWhoWaits) {
-  Participant device(member("arrival", "keyboard"));
-  Participant sim(member("arrival", "sim"));
+/// A reader with an Arrival takes samples out of DDS in the thread that receives them: one of DDS, or
+/// the thread that waits.
+class ArrivalAt : public testing::TestWithParam<bool> {
+ protected:
+  static ParticipantConfig loop(const std::string& session, bool lockstep = false) {
+    ParticipantConfig config = member(session + (GetParam() ? "_loop" : ""), "sim", lockstep);
+    config.for_loop = GetParam();
+    return config;
+  }
+  static ParticipantConfig other(const std::string& session, const std::string& node,
+                                 bool lockstep = false) {
+    return member(session + (GetParam() ? "_loop" : ""), node, lockstep);
+  }
+};
+
+TEST_P(ArrivalAt, CountsTheMessagesOfItsReadersAndWakesWhoWaits) {
+  Participant device(other("arrival", "keyboard"));
+  Participant sim(loop("arrival"));
   Arrival arrival;
   Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
   Reader<msg::GestureForces> other(sim, Topic::kForces, &arrival);
@@ -155,14 +169,14 @@ TEST(Arrival, CountsTheMessagesOfItsReadersAndWakesWhoWaits) {
   EXPECT_FALSE(arrival.wait_until(arrival.count(), node::monotonic_nsec() + 1'000'000));
 }
 
-TEST(Arrival, KeepsTheNewestOfEachDeviceAndWriterWhateverAnotherSends) {
-  Participant device(member("room", "keyboard"));
-  Participant other(member("room", "flood"));
-  Participant sim(member("room", "sim"));
+TEST_P(ArrivalAt, KeepsTheNewestOfEachDeviceAndWriterWhateverAnotherSends) {
+  Participant device(other("room", "keyboard"));
+  Participant third(other("room", "flood"));
+  Participant sim(loop("room"));
   Arrival arrival;
   Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
   Writer<msg::GesturePositions> writer(device, Topic::kPositions);
-  Writer<msg::GesturePositions> flood(other, Topic::kPositions);
+  Writer<msg::GesturePositions> flood(third, Topic::kPositions);
   Writer<msg::GesturePositions> own(sim, Topic::kPositions);
   ASSERT_TRUE(eventually([&] {
     return reader.matched_count() == 3 && writer.matched_count() == 1 && flood.matched_count() == 1;
@@ -191,9 +205,9 @@ TEST(Arrival, KeepsTheNewestOfEachDeviceAndWriterWhateverAnotherSends) {
 }
 
 /// In lockstep every message counts, with an arrival as without one.
-TEST(Arrival, LosesNothingInLockstep) {
-  Participant device(member("letters", "keyboard", true));
-  Participant sim(member("letters", "sim", true));
+TEST_P(ArrivalAt, LosesNothingInLockstep) {
+  Participant device(other("letters", "keyboard", true));
+  Participant sim(loop("letters", true));
   Arrival arrival;
   Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
   Writer<msg::GesturePositions> writer(device, Topic::kPositions);
@@ -214,6 +228,36 @@ TEST(Arrival, LosesNothingInLockstep) {
       EXPECT_EQ(sample.sample(), ++newest.at(sample.device_id()));
     return count == 2 * kDevices;
   })) << count;
+}
+
+INSTANTIATE_TEST_SUITE_P(ThreadOf, ArrivalAt, testing::Values(false, true),
+                         [](const auto& tested) { return tested.param ? "Loop" : "Dds"; });
+
+/// A loop that computes for long, or has ended, leaves no sample in the socket.
+TEST(ForceLoop, SamplesArriveWhileNoThreadWaitsForThem) {
+  ParticipantConfig config = member("unattended", "sim");
+  config.for_loop = true;
+  Participant sim(config);
+  Participant device(member("unattended", "keyboard"));
+  Arrival arrival;
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions, &arrival);
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+  ASSERT_TRUE(
+      eventually([&] { return reader.matched_count() == 1 && writer.matched_count() == 1; }));
+  msg::GesturePositions taken;
+  const auto write_and_take = [&](std::uint64_t number) {
+    msg::GesturePositions sample = sample_of(5, number);
+    return eventually([&] {
+      EXPECT_TRUE(writer.write(sample));
+      while (reader.take(taken)) {
+        if (taken.sample() == number) return true;
+      }
+      return false;
+    });
+  };
+  EXPECT_TRUE(write_and_take(1)) << "no thread has waited yet";
+  arrival.wait_until(arrival.count(), node::monotonic_nsec() + 30'000'000);
+  EXPECT_TRUE(write_and_take(2)) << "a thread has waited, and does not come back";
 }
 
 TEST(Dds, CarriesALockstepGestureWholeAndInOrder) {

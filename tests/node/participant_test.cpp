@@ -17,10 +17,12 @@
 #include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/scene.h"
+#include "node/dds/arrival.h"
 #include "node/dds/participant_ports.h"
 #include "node/dds/process_identity.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/time.h"
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
@@ -244,6 +246,71 @@ TEST(Participant, SaysThatADomainIsFull) {
   }
   others.pop_back();
   EXPECT_NO_THROW(Participant(member("full", "here")));
+}
+
+TEST(Participant, ThatObservesTakesAPortOfItsOwnWhereThereIsOne) {
+  const int domain = test::own_domain();
+  std::vector<std::unique_ptr<ParticipantPorts>> observers;
+  for (int n = 0; n <= kMaxObservers; ++n) {
+    observers.push_back(std::make_unique<ParticipantPorts>(domain, "127.0.0.1", true));
+    const bool has_own = n < kMaxObservers;
+    EXPECT_EQ(is_of_observer(observers.back()->discovery(), domain, true), has_own) << n;
+    EXPECT_EQ(is_of_observer(observers.back()->samples(), domain, true), has_own) << n;
+  }
+  const ParticipantPorts other(domain, "127.0.0.1");
+  EXPECT_FALSE(is_of_observer(other.samples(), domain, true));
+  for (const int of_domain : {domain - 1, domain + 1})
+    EXPECT_FALSE(is_of_observer(observers.front()->samples(), of_domain, true)) << of_domain;
+
+  std::vector<std::unique_ptr<ParticipantPorts>> others;
+  while (others.size() + 2 < kMaxParticipants)
+    others.push_back(std::make_unique<ParticipantPorts>(domain, "127.0.0.1"));
+  EXPECT_THROW(ParticipantPorts(domain, "127.0.0.1"), std::runtime_error)
+      << "those of observers are not for others";
+}
+
+/// A loop takes its samples itself, out of the socket that its participant has at that moment.
+TEST(Participant, ThatALoopWaitsForJoinsAnew) {
+  ParticipantConfig config = member("loop_anew", "here");
+  config.for_loop = true;
+  Participant here(config);
+  Participant there(member("loop_anew", "there"));
+  Arrival arrival;
+  Reader<msg::GestureForces> forces(here, Topic::kForces, &arrival);
+  Writer<msg::GestureForces> writer(there, Topic::kForces);
+  std::atomic<bool> ending{false};
+  std::thread writes([&] {
+    msg::GestureForces force;
+    while (!ending) {
+      force.sample(force.sample() + 1);
+      EXPECT_TRUE(writer.write(force));
+      std::this_thread::sleep_for(200us);
+    }
+  });
+  const auto receives = [&] {
+    msg::GestureForces force;
+    int taken = 0;
+    return eventually([&] {
+      const std::uint32_t seen = arrival.count();
+      while (forces.take(force)) ++taken;
+      arrival.wait_until(seen, node::monotonic_nsec() + 1'000'000);
+      return taken > 100;
+    });
+  };
+
+  EXPECT_TRUE(receives());
+  for (int time = 1; time <= 5; ++time) {
+    const std::uint64_t before = here.rejoin_count();
+    ASSERT_TRUE(eventually([&] { return knows(here, "loop_anew/there"); }));
+    here.drop(peer_named(here, "loop_anew/there"));
+    EXPECT_TRUE(eventually([&] {
+      arrival.wait_until(arrival.count(), node::monotonic_nsec() + 1'000'000);
+      return here.rejoin_count() > before;
+    }));
+    EXPECT_TRUE(receives()) << "time " << time;
+  }
+  ending = true;
+  writes.join();
 }
 
 TEST(Participant, SaysThatAnAddressIsOfThisHostNoMore) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -64,6 +65,36 @@ msg::GesturePositions positions_of(std::uint32_t device, std::uint64_t sample) {
   positions.axis_count(2);
   positions.position_m()[1] = -0.0125;
   return positions;
+}
+
+/// A loop sends its samples to who plays with it at once, and to who observes it from another thread.
+TEST(RawTopic, AnObserverOfALoopReceivesEverySampleInOrder) {
+  ParticipantConfig of_loop{test::own_domain(), "observed", "hand"};
+  of_loop.for_loop = true;
+  ParticipantConfig of_observer{test::own_domain(), "observed", "recorder"};
+  of_observer.observes = true;
+  Participant hand(of_loop);
+  Participant observer(of_observer);
+  Participant sim({test::own_domain(), "observed", "sim"});
+  Writer<msg::GesturePositions> writer(hand, Topic::kPositions);
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  Received received;
+  const RawReader raw(observer, writer_of(observer, "gesture/positions").topic, received.sink());
+  ASSERT_TRUE(eventually([&] { return writer.matched_count() == 2; }));
+
+  // Few enough for the socket of a receiver that does not run.
+  constexpr std::uint64_t kSent = 1000;
+  for (std::uint64_t number = 1; number <= kSent; ++number) {
+    msg::GesturePositions sample = positions_of(7, number);
+    EXPECT_TRUE(writer.write(sample));
+    if (number % 100 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  }
+
+  EXPECT_TRUE(eventually([&] { return received.copies().size() >= kSent; }));
+  std::uint64_t before = received.copies().front().sequence - 1;
+  for (const Received::Copy& copy : received.copies()) EXPECT_EQ(copy.sequence, ++before);
+  msg::GesturePositions newest;
+  EXPECT_TRUE(eventually([&] { return reader.take(newest) && newest.sample() == kSent; }));
 }
 
 /// Reads a topic as bytes, writes them into another session, and reads them there with their type.
