@@ -93,6 +93,13 @@ test('the sentences of these documents have at most 25 words', () => {
   }
 });
 
+test('a warning ends no build of ./cordis unless CORDIS_WERROR asks for it', () => {
+  const { configurePresets } = JSON.parse(read(join(root, 'CMakePresets.json')));
+  for (const { name, cacheVariables } of configurePresets.filter((preset) => ['release', 'asan', 'tsan'].includes(preset.name))) {
+    assert.equal(cacheVariables.CORDIS_WERROR, undefined, name);
+  }
+});
+
 test('programs, benchmarks and suites that documents name exist', () => {
   const lists = filesBelow(root, /^CMakeLists\.txt$/).map(read).join('\n');  // of programs and of their sources
   const sources = filesBelow(join(root, 'tests'), /\.cpp$/).map(read).join('\n');
