@@ -85,7 +85,8 @@ struct FoundWriter {
 /// Readers take nothing from a participant that speaks another version of the wire; writers fill in
 /// `wire_version` where a message has it.
 ///
-/// Its threads inherit the priority of the thread that makes it.
+/// Its threads inherit the priority of the thread that makes it, but for the one that sends again
+/// what was lost: that one has ordinary priority.
 class Participant {
  public:
   /// @throws std::runtime_error when DDS refuses (domain out of range or full, no loopback

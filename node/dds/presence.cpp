@@ -15,6 +15,7 @@
 
 #include "node/dds/departure.h"
 #include "node/dds/process_identity.h"
+#include "node/dds/resending_thread.h"
 
 namespace cordis::dds {
 
@@ -155,9 +156,11 @@ Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_else
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
+  const std::vector<pid_t> threads_before = threads_of_process();
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_, link_), this,
       fast::StatusMask::none());
+  lower_resending_thread(threads_before);
   // Without its interface Fast DDS makes a participant that has no sockets.
   const bool is_bound =
       participant_ != nullptr && !is_free(ports_.discovery(), config.network.address);
