@@ -18,7 +18,7 @@ class AnswerPoll {
  public:
   static constexpr int kTrial = 32;            // waits
   static constexpr int kEnough = 24;           // of them
-  static constexpr int kPause = 2000;          // waits
+  static constexpr int kPause = 250;           // waits
   static constexpr int kLongestPause = 16000;  // waits
 
   /// How a wait ended.
