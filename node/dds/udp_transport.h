@@ -1,4 +1,4 @@
-// node/dds/udp_transport.h -- UDP as participants use it. Included by node/dds alone.
+// node/dds/udp_transport.h -- UDP as participants use it. Included by node/dds and a bench alone.
 #pragma once
 
 #include <atomic>

@@ -30,11 +30,14 @@
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "node/dds/arrival.h"
+#include "node/dds/participant_ports.h"
+#include "node/dds/udp_transport.h"
 #include "node/inherited_priority.h"
 #include "node/latency.h"
 #include "node/paced_loop.h"
@@ -58,13 +61,14 @@ constexpr int kLoopPriority = 80;
 constexpr int kDdsPriority = 40;
 constexpr int kPatience = 10 * kRate;  // ticks until the first answer
 
-enum class Transport { kUdp, kSharedMemoryAndUdp, kSharedMemory, kDataSharing };
+enum class Transport { kUdpOfLoop, kUdp, kSharedMemoryAndUdp, kSharedMemory, kDataSharing };
 
 struct Named {
   Transport transport;
   const char* name;
 };
-constexpr Named kTransports[] = {{Transport::kUdp, "UDP on loopback"},
+constexpr Named kTransports[] = {{Transport::kUdpOfLoop, "UDP, as in use"},
+                                 {Transport::kUdp, "UDP of Fast DDS"},
                                  {Transport::kSharedMemoryAndUdp, "shared memory and UDP"},
                                  {Transport::kSharedMemory, "shared memory"},
                                  {Transport::kDataSharing, "data sharing"}};
@@ -112,6 +116,22 @@ class SampleType final : public fast::TopicDataType {
   static constexpr std::uint32_t kBytes = kHeaderBytes + sizeof(Sample);
 };
 
+/// A participant whose loop takes the samples itself, as those of Cordis.
+fast::DomainParticipantQos qos_of_loop(int domain, const cordis::dds::ParticipantPorts& ports,
+                                       const std::shared_ptr<cordis::dds::TransportLink>& link) {
+  fast::DomainParticipantQos qos;
+  auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  udp->sendBufferSize = udp->receiveBufferSize = 1u << 20;
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(std::make_shared<cordis::dds::UdpTransportDescriptor>(
+      udp, "127.0.0.1", domain, ports.samples(), true, link));
+  rtps::Locator_t samples(LOCATOR_KIND_UDPv4, ports.samples());
+  rtps::IPLocator::setIPv4(samples, "127.0.0.1");
+  qos.wire_protocol().default_unicast_locator_list.push_back(samples);
+  return qos;
+}
+
 fast::DomainParticipantQos participant_qos(Transport kind) {
   fast::DomainParticipantQos qos;
   qos.transport().use_builtin_transports = false;
@@ -145,12 +165,20 @@ void apply(Transport kind, Qos& qos) {
 class Side final : public fast::DataReaderListener {
  public:
   /// Ends the process when DDS refuses.
-  Side(Transport kind, int domain, const char* written, const char* read) {
+  Side(Transport kind, int domain, const char* written, const char* read)
+      : ports_(domain, "127.0.0.1") {
     const cordis::node::InheritedPriority priority(kDdsPriority);
     auto* const factory = fast::DomainParticipantFactory::get_instance();
-    participant_ =
-        factory->create_participant(static_cast<std::uint32_t>(domain), participant_qos(kind));
+    participant_ = factory->create_participant(
+        static_cast<std::uint32_t>(domain),
+        kind == Transport::kUdpOfLoop ? qos_of_loop(domain, ports_, link_) : participant_qos(kind));
     if (participant_ == nullptr) fail("a participant");
+    link_->is_open = true;
+    if (link_->samples != nullptr) {
+      auto present = std::make_shared<cordis::dds::PresentSocket>();
+      present->set(link_->samples);
+      arrival_.attach(std::move(present));
+    }
     const fast::TypeSupport type(new SampleType);
     type.register_type(participant_);
     const auto topic = [&](const char* name) {
@@ -196,6 +224,9 @@ class Side final : public fast::DataReaderListener {
     arrival_.announce();
   }
 
+  cordis::dds::ParticipantPorts ports_;
+  std::shared_ptr<cordis::dds::TransportLink> link_ =
+      std::make_shared<cordis::dds::TransportLink>();
   fast::DomainParticipant* participant_ = nullptr;
   fast::DataWriter* writer_ = nullptr;
   fast::DataReader* reader_ = nullptr;
@@ -240,9 +271,9 @@ std::int64_t await(Side& side, std::uint64_t number, std::int64_t begun, std::in
     if (side.newest() == number) return now;
     if (now >= end) return 0;
     if (now < begun + poll_nsec) {
-      const std::int64_t before = cordis::node::thread_processor_nsec();
+      const std::int64_t before = side.arrival().polled_nsec();
       side.arrival().poll_until(seen, begun + poll_nsec);
-      polled_nsec += cordis::node::thread_processor_nsec() - before;
+      polled_nsec += side.arrival().polled_nsec() - before;
     } else {
       side.arrival().wait_until(seen, end);
     }
