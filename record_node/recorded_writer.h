@@ -19,8 +19,7 @@ struct RecordedWriter {
   const dds::WriterId id;
   const std::uint32_t number;  ///< its place in the list, from 0
 
-  bool is_of_loop = false;          ///< a force loop of this host writes it; set when it is added
-  std::uint64_t last_sequence = 0;  ///< of the threads of DDS
+  std::uint64_t last_sequence = 0;         ///< of the threads of DDS
   std::atomic<std::uint64_t> messages{0};  ///< that came
   std::atomic<std::uint64_t> bytes{0};     ///< of them
   std::atomic<std::uint64_t> dropped{0};   ///< of them, for want of room or disk
@@ -30,7 +29,8 @@ struct RecordedWriter {
   /// of which DDS keeps messages back.
   std::atomic<std::uint64_t> before{0};
 
-  std::uint16_t channel = 0;  ///< of the thread of the file; 0: not in it yet
+  std::uint16_t channel = 0;     ///< of the thread of the file; 0: not in it yet
+  bool is_of_loop_here = false;  ///< likewise: a force loop of this host writes it
 };
 
 /// The writers so far; any thread adds one or looks at one. None leaves.

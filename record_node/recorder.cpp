@@ -64,33 +64,10 @@ struct Recorder::Impl {
            (config.excluded.empty() || !mcap::matches_topic(topic, config.excluded));
   }
 
-  static bool is_of_loop(const dds::RawTopic& topic) {
-    return topic.name == msg::TOPIC_POSITIONS || topic.name == msg::TOPIC_FORCES;
-  }
-
-  /// True if the clock of a writer is that of this host.
-  bool is_here(const dds::WriterId& id) const {
-    const std::vector<dds::Peer> peers = participant.peers();
-    return std::ranges::any_of(peers, [&id](const dds::Peer& peer) {
-      return std::equal(peer.prefix.begin(), peer.prefix.end(), id.begin()) && peer.is_here();
-    });
-  }
-
-  /// When a sample came; one that the force loop had another thread send: when it was written.
-  static std::int64_t log_nsec(const RecordedWriter& writer, const dds::RawSample& sample) {
-    constexpr std::int64_t kLongestDetour = 25'000'000;  // [ns]
-    const std::int64_t detour = sample.reception_nsec - sample.source_nsec;
-    const bool is_sent_later = writer.is_of_loop && detour > 0 && detour <= kLongestDetour;
-    return is_sent_later ? sample.source_nsec : sample.reception_nsec;
-  }
-
   RecordedWriter* writer_of(const dds::RawTopic& topic, const dds::WriterId& id) {
     const std::lock_guard lock(known_mutex);
     RecordedWriter*& writer = known[id];
-    if (writer == nullptr) {
-      writer = &writers.add(topic, id);
-      writer->is_of_loop = is_of_loop(topic) && is_here(id);
-    }
+    if (writer == nullptr) writer = &writers.add(topic, id);
     return writer;
   }
 
@@ -105,11 +82,10 @@ struct Recorder::Impl {
     writer->last_sequence = sample.sequence;
     ++writer->messages;
     writer->bytes += sample.size;
-    const QueuedSample queued{
-        .channel = writer->number,
-        .sequence = static_cast<std::uint32_t>(sample.sequence),
-        .log_time_nsec = static_cast<std::uint64_t>(log_nsec(*writer, sample)),
-        .publish_time_nsec = static_cast<std::uint64_t>(sample.source_nsec)};
+    const QueuedSample queued{.channel = writer->number,
+                              .sequence = static_cast<std::uint32_t>(sample.sequence),
+                              .log_time_nsec = static_cast<std::uint64_t>(sample.reception_nsec),
+                              .publish_time_nsec = static_cast<std::uint64_t>(sample.source_nsec)};
     const bool is_frame = topic.name == msg::TOPIC_FRAME;
     if (file.is_over() || !queue.push(queued, {sample.data, sample.size}, is_frame))
       ++writer->dropped;
@@ -123,8 +99,9 @@ struct Recorder::Impl {
         origin.partitions += (origin.partitions.empty() ? "" : ",") + partition;
     }
     for (const dds::Peer& peer : participant.peers()) {
-      if (std::equal(peer.prefix.begin(), peer.prefix.end(), id.begin()))
-        origin.process = peer.name;
+      if (!std::equal(peer.prefix.begin(), peer.prefix.end(), id.begin())) continue;
+      origin.process = peer.name;
+      origin.is_here = peer.is_here();
     }
     return origin;
   }

@@ -9,6 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "idl/schema_text.h"
+#include "idl/topics.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/topic_words.h"
 
@@ -31,6 +32,19 @@ std::map<std::string, std::string> known_types(const std::map<std::string, std::
     for (const auto& [name, type] : parse_idl(text, source)) types[name] = text;
   }
   return types;
+}
+
+bool is_of_loop(const dds::RawTopic& topic) {
+  return topic.name == msg::TOPIC_POSITIONS || topic.name == msg::TOPIC_FORCES;
+}
+
+/// When a sample came; one that the force loop had another thread send: when it was written.
+std::uint64_t log_nsec(const RecordedWriter& writer, const QueuedSample& sample) {
+  constexpr std::uint64_t kLongestDetour = 25'000'000;  // [ns]
+  const bool is_sent_later = writer.is_of_loop_here &&
+                             sample.log_time_nsec > sample.publish_time_nsec &&
+                             sample.log_time_nsec - sample.publish_time_nsec <= kLongestDetour;
+  return is_sent_later ? sample.publish_time_nsec : sample.log_time_nsec;
 }
 
 }  // namespace
@@ -115,7 +129,7 @@ bool TakeWriter::write(const QueuedSample& sample) {
   const auto data = std::as_bytes(batch_.data(sample));
   const mcap::WriteStatus status = file_.write({.channel_id = channel,
                                                 .sequence = sample.sequence,
-                                                .log_time_nsec = sample.log_time_nsec,
+                                                .log_time_nsec = log_nsec(writer, sample),
                                                 .publish_time_nsec = sample.publish_time_nsec,
                                                 .data = data});
   note(status);
@@ -129,6 +143,7 @@ bool TakeWriter::write(const QueuedSample& sample) {
 std::uint16_t TakeWriter::channel_of(RecordedWriter& writer) {
   if (writer.channel != 0) return writer.channel;
   const Origin origin = find_origin_(writer.id);
+  writer.is_of_loop_here = origin.is_here && is_of_loop(writer.topic);
   mcap::Channel channel;
   channel.schema_id = schema_of(writer.topic.type);
   channel.topic = writer.topic.name;

@@ -27,6 +27,7 @@ class TakeWriter {
   struct Origin {
     std::string process;     ///< SESSION/NODE, or what another program calls itself
     std::string partitions;  ///< with commas between them
+    bool is_here = false;    ///< on this host, with its clock
   };
   using FindOrigin = std::function<Origin(const dds::WriterId&)>;
 
