@@ -24,6 +24,7 @@ class StatusWatch {
 
  private:
   void take_all();
+  void print(const std::string& node) const;
 
   dds::Reader<msg::NodeStatus> reader_;
   std::map<std::string, msg::NodeStatus> newest_;
