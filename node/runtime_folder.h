@@ -19,9 +19,10 @@ void make_private_folder(const std::filesystem::path& folder);
 /// Holds the lock of a folder: one process at a time has it, whichever way the last one ended.
 class FolderLock {
  public:
-  /// Waits for it, at most so long. @throws std::runtime_error when it is not to be had.
+  /// Waits for it, at most so long: a process that is stopped while it has the lock may go on later.
+  /// @throws std::runtime_error when it is not to be had.
   explicit FolderLock(const std::filesystem::path& folder,
-                      std::chrono::milliseconds at_most = std::chrono::seconds(5));
+                      std::chrono::milliseconds at_most = std::chrono::seconds(20));
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
