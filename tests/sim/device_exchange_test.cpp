@@ -402,8 +402,9 @@ TEST(DeviceExchange, DoesNotMissADeviceThatItHasLetGoOfOrThatIsRefused) {
 
 TEST(DeviceExchange, LetsGoOfAMassWhenTheForceFallsSilent) {
   engine::World world = world_with_a_port();
-  DeviceExchange exchange("key", kDevice, Role::kLiaison,
-                          {port_at(2, Vec3(0.0, 1.0, 0.0), 0, Vec3::UnitY())}, kRate, 77);
+  scene::Port port = port_at(2, Vec3(0.0, 1.0, 0.0), 0, Vec3::UnitY());
+  port.role = Role::kLiaison;
+  DeviceExchange exchange("key", kDevice, Role::kLiaison, {port}, kRate, 77);
   msg::GestureForces push;
   push.device_id(kDevice);
   push.epoch(kEpoch);
