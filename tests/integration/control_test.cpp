@@ -472,7 +472,7 @@ class ControlOfFiles : public ControlInRealtime {
     dds::Writer<msg::ControlCommand> commands(session_.participant(), dds::Topic::kCommand);
     dds::Reader<msg::ControlReply> replies(session_.participant(), dds::Topic::kReply);
     EXPECT_TRUE(
-        eventually([&] { return commands.matched_count() > 0 && replies.matched_count() > 0; }));
+        eventually([&] { return commands.matched_count() == 2 && replies.matched_count() == 2; }));
     msg::ControlCommand command;
     command.sender("test");
     command.target("sim_node");
@@ -556,7 +556,7 @@ TEST_F(ControlInRealtime, APauseOvertakesALoadThatIsBeingRead) {
   dds::Writer<msg::ControlCommand> commands(session_.participant(), dds::Topic::kCommand);
   dds::Reader<msg::ControlReply> replies(session_.participant(), dds::Topic::kReply);
   ASSERT_TRUE(
-      eventually([&] { return commands.matched_count() > 0 && replies.matched_count() > 0; }));
+      eventually([&] { return commands.matched_count() == 2 && replies.matched_count() == 2; }));
   const auto send = [&](std::uint64_t id, msg::ControlVerb verb, const std::string& argument) {
     msg::ControlCommand command;
     command.sender("test");
