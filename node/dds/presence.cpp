@@ -83,8 +83,8 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   udp->receiveBufferSize = kSocketBufferBytes;
   if (!config.network.is_loopback()) udp->maxMessageSize = kLargestDatagramBytes;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<UdpTransportDescriptor>(
-      udp, config.network.address, config.domain, ports.samples(), config.for_loop, link));
+  qos.transport().user_transports.push_back(
+      std::make_shared<UdpTransportDescriptor>(udp, config, ports.samples(), link));
 
   // On loopback no socket takes multicast, so no datagram of the network reaches a session. Others
   // are found where they can be.

@@ -23,7 +23,7 @@ class SampleSocket {
   using Locator = eprosima::fastrtps::rtps::Locator_t;
 
   /// @param locator         where DDS expects the samples
-  /// @param receiver        DDS; it is there until detach()
+  /// @param receiver        what hands a datagram to DDS; not used after detach()
   /// @param buffer_bytes    that the kernel is to keep
   /// @param longest_bytes   of a datagram
   /// @throws std::system_error when the port cannot be bound.

@@ -43,14 +43,12 @@ int open_sender(const std::string& host, std::uint32_t buffer_bytes) noexcept {
 
 }  // namespace
 
-UdpTransportDescriptor::UdpTransportDescriptor(std::shared_ptr<Udp> below, std::string host,
-                                               int own_domain, std::uint16_t sample_port,
-                                               bool for_loop, std::shared_ptr<TransportLink> shared)
+UdpTransportDescriptor::UdpTransportDescriptor(std::shared_ptr<Udp> below, ParticipantConfig config,
+                                               std::uint16_t sample_port,
+                                               std::shared_ptr<TransportLink> shared)
     : ChainingTransportDescriptor(below),
-      address(std::move(host)),
-      domain(own_domain),
+      participant(std::move(config)),
       samples(sample_port),
-      is_for_loop(for_loop),
       link(std::move(shared)),
       buffer_bytes(below->receiveBufferSize) {}
 
@@ -59,13 +57,12 @@ eprosima::fastdds::rtps::TransportInterface* UdpTransportDescriptor::create_tran
 }
 
 UdpTransport::UdpTransport(const UdpTransportDescriptor& descriptor)
-    : ChainingTransport(descriptor),
-      descriptor_(descriptor),
-      is_loopback_(descriptor.address == "127.0.0.1"),
-      sender_(descriptor.is_for_loop ? open_sender(descriptor.address, descriptor.buffer_bytes)
-                                     : -1),
-      end_of_work_(descriptor.is_for_loop ? eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK) : -1),
-      for_observers_(sender_) {}
+    : ChainingTransport(descriptor), descriptor_(descriptor) {
+  if (!descriptor.participant.for_loop) return;
+  sender_ = open_sender(descriptor.participant.network.address, descriptor.buffer_bytes);
+  end_of_work_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  for_observers_.emplace(sender_);
+}
 
 UdpTransport::~UdpTransport() {
   if (attendant_.joinable()) {
@@ -77,7 +74,7 @@ UdpTransport::~UdpTransport() {
 }
 
 bool UdpTransport::is_for_samples(const Locator& locator) const noexcept {
-  return descriptor_.is_for_loop && locator.kind == kind() &&
+  return descriptor_.participant.for_loop && locator.kind == kind() &&
          !rtps::IPLocator::isMulticast(locator) && locator.port == descriptor_.samples;
 }
 
@@ -93,8 +90,8 @@ bool UdpTransport::OpenInputChannel(const Locator& locator, SampleSocket::Receiv
   if (socket_ != nullptr) return true;
   if (sender_ < 0 || end_of_work_ < 0) return false;
   try {
-    socket_ = std::make_shared<SampleSocket>(descriptor_.address, locator, *receiver,
-                                             descriptor_.buffer_bytes, longest_bytes);
+    socket_ = std::make_shared<SampleSocket>(descriptor_.participant.network.address, locator,
+                                             *receiver, descriptor_.buffer_bytes, longest_bytes);
     attendant_ = std::thread([this] { attend(); });
   } catch (const std::exception&) {
     socket_.reset();
@@ -125,7 +122,7 @@ void UdpTransport::attend() noexcept {
       if (socket_->take() != SampleSocket::Taken::kDatagram) break;
       socket_->deliver();
     }
-    idle_looks = for_observers_.flush() > 0 ? 0 : std::min(idle_looks + 1, kIdleLooks);
+    idle_looks = for_observers_->flush() > 0 ? 0 : std::min(idle_looks + 1, kIdleLooks);
   }
 }
 
@@ -134,13 +131,14 @@ bool UdpTransport::send(rtps::SenderResource* below, const std::uint8_t* datagra
                         const std::chrono::steady_clock::time_point& deadline) {
   if (!descriptor_.link->is_open.load(std::memory_order_acquire)) return true;
   if (socket_ == nullptr) return below->send(datagram, size, begin, end, deadline);
+  const ParticipantConfig& own = descriptor_.participant;
   bool is_sent = true;
   for (LocatorsIterator& one = *begin; one != *end; ++one) {
     if ((*one).kind != kind()) continue;
     const sockaddr_in address = udp_address_of(*one);
     const auto port = static_cast<std::uint16_t>((*one).port);
-    is_sent &= is_of_observer(port, descriptor_.domain, is_loopback_)
-                   ? for_observers_.put(datagram, size, address)
+    is_sent &= is_of_observer(port, own.domain, own.network.is_loopback())
+                   ? for_observers_->put(datagram, size, address)
                    : send_datagram(sender_, datagram, size, address);
   }
   return is_sent;

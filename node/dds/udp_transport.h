@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <optional>
 #include <thread>
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
@@ -13,6 +13,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
 #include "node/dds/datagram_queue.h"
+#include "node/dds/participant.h"
 #include "node/dds/sample_socket.h"
 
 namespace cordis::dds {
@@ -31,20 +32,15 @@ struct UdpTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransport
   using Udp = eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
   /// @param below        carries all that this transport does not
-  /// @param host         address of this host
-  /// @param own_domain   of DDS
-  /// @param sample_port  of the participant
-  /// @param for_loop     a loop takes the samples
-  UdpTransportDescriptor(std::shared_ptr<Udp> below, std::string host, int own_domain,
-                         std::uint16_t sample_port, bool for_loop,
-                         std::shared_ptr<TransportLink> shared);
+  /// @param config       of the participant
+  /// @param sample_port  likewise
+  UdpTransportDescriptor(std::shared_ptr<Udp> below, ParticipantConfig config,
+                         std::uint16_t sample_port, std::shared_ptr<TransportLink> shared);
 
   eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
 
-  std::string address;
-  int domain;
+  ParticipantConfig participant;
   std::uint16_t samples;
-  bool is_for_loop;
   std::shared_ptr<TransportLink> link;
   std::uint32_t buffer_bytes;
 };
@@ -84,12 +80,11 @@ class UdpTransport final : public eprosima::fastdds::rtps::ChainingTransport {
   void attend() noexcept;
 
   UdpTransportDescriptor descriptor_;
-  const bool is_loopback_;
-  int sender_ = -1;       // of a loop: a socket
-  int end_of_work_ = -1;  // likewise: an event
-  DatagramQueue for_observers_;
-  std::shared_ptr<SampleSocket> socket_;  // of a loop
-  std::thread attendant_;                 // likewise
+  int sender_ = -1;                             // of a loop: a socket
+  int end_of_work_ = -1;                        // likewise: an event
+  std::optional<DatagramQueue> for_observers_;  // likewise
+  std::shared_ptr<SampleSocket> socket_;        // of a loop
+  std::thread attendant_;                       // likewise
 };
 
 }  // namespace cordis::dds

@@ -124,8 +124,10 @@ fast::DomainParticipantQos qos_of_loop(int domain, const cordis::dds::Participan
   udp->interfaceWhiteList.emplace_back("127.0.0.1");
   udp->sendBufferSize = udp->receiveBufferSize = 1u << 20;
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(std::make_shared<cordis::dds::UdpTransportDescriptor>(
-      udp, "127.0.0.1", domain, ports.samples(), true, link));
+  cordis::dds::ParticipantConfig config{domain, "bench", "side"};
+  config.for_loop = true;
+  qos.transport().user_transports.push_back(
+      std::make_shared<cordis::dds::UdpTransportDescriptor>(udp, config, ports.samples(), link));
   rtps::Locator_t samples(LOCATOR_KIND_UDPv4, ports.samples());
   rtps::IPLocator::setIPv4(samples, "127.0.0.1");
   qos.wire_protocol().default_unicast_locator_list.push_back(samples);
