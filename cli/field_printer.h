@@ -20,7 +20,7 @@ std::string json_of(const record::MessageType& type, std::span<const std::uint8_
 
 /// The message as cells of a table, and their names: position_m[0], event[3].value.
 struct FieldCells {
-  std::string names;   ///< with commas
+  std::string names;   ///< separated by commas
   std::string values;  ///< likewise
 };
 FieldCells csv_of(const record::MessageType& type, std::span<const std::uint8_t> message);

@@ -20,7 +20,7 @@ namespace cordis::cli {
 struct ReceivedMessage {
   dds::RawTopic topic;
   std::vector<std::uint8_t> bytes;  ///< none where they are not kept
-  std::size_t size = 0;             ///< of the message
+  std::size_t size = 0;             ///< bytes in the message
   std::int64_t source_nsec = 0;
   std::int64_t reception_nsec = 0;
   std::uint64_t sequence = 0;

@@ -18,13 +18,13 @@ class AnswerFilter {
   enum class Outcome {
     kTaken,
     kRefused,  ///< malformed, outdated, or of a sample that this exchange has not sent
-    kForeign,  ///< to another node, or of a scene that has not received this device yet
+    kForeign,  ///< meant for another node, or sent by a scene that has not received this device yet
   };
 
   /// What the filter holds answers to.
   struct Series {
-    std::uint64_t epoch = 0;         ///< of this process
-    std::uint64_t first_sample = 0;  ///< of this exchange
+    std::uint64_t epoch = 0;         ///< epoch of this process
+    std::uint64_t first_sample = 0;  ///< first sample of this exchange
     std::int64_t begun_nsec = 0;     ///< when this exchange began
   };
 

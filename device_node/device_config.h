@@ -25,8 +25,8 @@ struct DeviceConfig {
   config::DeviceLimits limits;  ///< as the file declares them, and as they are published
   AxisLayout layout;
   EndEffectorMap end_effector_map;       ///< between the axes and the coordinates on the wire
-  ForceGuardSettings force_guard;        ///< of role mass
-  PositionGuardSettings position_guard;  ///< of role liaison
+  ForceGuardSettings force_guard;        ///< applies in role mass
+  PositionGuardSettings position_guard;  ///< applies in role liaison
   TraceSettings trace;
   std::string driver;  ///< its name in the driver table
 };

@@ -8,7 +8,7 @@
 
 namespace cordis::device {
 
-inline constexpr int kMaxCoordinates = 12;  ///< of a handle with an end-effector map
+inline constexpr int kMaxCoordinates = 12;  ///< most that an end-effector map may have
 
 /// The morphology of a device as a linear map: coordinates of the handle q = A x, with x the
 /// positions of the axes. Forces go the other way, f = A^T F, so that the power F dq = f dx is the

@@ -38,7 +38,7 @@ class Exchange {
 
   /// What identifies the samples of this process.
   struct Series {
-    std::uint64_t epoch = 0;        ///< of this process
+    std::uint64_t epoch = 0;        ///< epoch of this process
     std::uint64_t last_sample = 0;  ///< number of the last sample sent before
   };
 
@@ -64,12 +64,12 @@ class Exchange {
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  static constexpr double kAnswerShare = 0.5;  ///< of a period, in which the motors wait
+  static constexpr double kAnswerShare = 0.5;  ///< part of a period in which the motors wait
 
   /// The newest readings, under the next number; nothing while the driver has no device, so that
   /// another node may play it. In lockstep the last ones then, since a scene waits for them.
   void send_sample() noexcept;
-  void repeat_sample() noexcept;  ///< the same message once more
+  void repeat_sample() noexcept;  ///< sends the same message once more
 
   /// Takes all answers that are there. What the filter refuses is counted as dropped.
   void receive() noexcept;
@@ -95,7 +95,7 @@ class Exchange {
   /// of outside this loop.
   void step() noexcept;
 
-  bool has_device() const noexcept { return present_; }  ///< whether the driver has one
+  bool has_device() const noexcept { return present_; }  ///< true if the driver has one
   /// True if the scene has fallen silent: it answered this exchange, for longer than the watchdog
   /// it has answered no new sample, and no other node gets the answers. Counted in periods: one in
   /// which this loop stalled is not the scene's.

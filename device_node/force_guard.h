@@ -15,7 +15,7 @@ struct ForceGuardSettings {
   double slew_n_per_s = 5000.0;  ///< largest change of force per second, > 0
   double ramp_s = 0.2;           ///< over which forces grow from nothing at the start, >= 0
   double watchdog_s = 0.02;      ///< age at which a force is worth nothing, > 0
-  double period_s = 0.001;       ///< of the ticks, > 0
+  double period_s = 0.001;       ///< period of the ticks, > 0
   double power_w = 40.0;         ///< most that a motor may give to one moving axis, > 0
   PassivitySettings passivity;
 };

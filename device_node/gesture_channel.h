@@ -10,16 +10,16 @@ namespace cordis::device {
 
 /// One message of the force loop, in either direction: positions or forces (idl/gesture.idl).
 struct GestureMessage {
-  std::uint64_t epoch = 0;              ///< of its writer
+  std::uint64_t epoch = 0;              ///< epoch of its writer
   std::uint64_t sample = 0;             ///< +1 per message of the epoch, from 1
-  std::uint64_t answered_epoch = 0;     ///< of the message it takes into account; 0: none yet
-  std::uint64_t answered_sample = 0;    ///< of that message
-  std::int64_t answered_time_nsec = 0;  ///< of that message
+  std::uint64_t answered_epoch = 0;     ///< epoch of the message it takes into account; 0: none yet
+  std::uint64_t answered_sample = 0;    ///< number of that message
+  std::int64_t answered_time_nsec = 0;  ///< time of that message
   std::int64_t time_nsec = 0;           ///< CLOCK_MONOTONIC
   std::uint32_t axis_count = 0;         ///< valid entries of value
   AxisValues value{};                   ///< positions [m] or forces [N]
-  double work_j = 0.0;                  ///< of forces: that the hand has given in the epoch
-  double answer_delay_s = 0.0;          ///< of the newest applied answer; 0: none yet
+  double work_j = 0.0;                  ///< in forces: work of the hand in the epoch
+  double answer_delay_s = 0.0;          ///< delay of the newest applied answer; 0: none yet
 };
 
 /// Both directions of the force loop of one device.

@@ -12,10 +12,10 @@ namespace cordis::device {
 struct PassivitySettings {
   bool active = false;               ///< false: energy is watched, and nothing done about it
   double mass_kg = 0.05;             ///< moving part of one axis, > 0
-  double viscosity_n_s_per_m = 0.0;  ///< that the device itself has for certain, >= 0
-  double budget_j = 0.001;           ///< that a loop may give beyond what it took, >= 0
+  double viscosity_n_s_per_m = 0.0;  ///< certain viscosity of the device itself, >= 0
+  double budget_j = 0.001;           ///< energy that a loop may give beyond what it took, >= 0
   double tank_j = 0.8;               ///< most that it may have taken and give back, > 0
-  double travel_m = 0.04;            ///< of an axis, > 0
+  double travel_m = 0.04;            ///< travel of an axis, > 0
   double period_s = 0.001;           ///< > 0
 };
 

@@ -15,7 +15,7 @@ struct PositionGuardSettings {
   double speed_m_per_s = 2.0;  ///< largest speed at which a key is carried, > 0
   double ramp_s = 0.2;         ///< over which that speed grows from nothing at the start, >= 0
   double watchdog_s = 0.02;    ///< age at which a position is worth nothing, > 0
-  double period_s = 0.001;     ///< of the ticks, > 0
+  double period_s = 0.001;     ///< period of the ticks, > 0
 };
 
 /// The last hand on every position that goes to a motor, for a device of role liaison. Whatever it
@@ -30,7 +30,7 @@ class PositionGuard {
  public:
   /// Since the command before: a period or longer [s].
   static constexpr double kWholePeriod = std::numeric_limits<double>::infinity();
-  static constexpr double kFarthest = 100.0;  ///< that a scene leads a port to [m]
+  static constexpr double kFarthest = 100.0;  ///< largest coordinate that a scene may want [m]
 
   /// @throws std::invalid_argument when a setting is out of range.
   explicit PositionGuard(const PositionGuardSettings& settings);

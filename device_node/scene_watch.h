@@ -23,7 +23,7 @@ class SceneWatch {
  public:
   /// What the newest scene wants of the device.
   struct Part {
-    bool is_present = false;    ///< there is a scene
+    bool is_present = false;    ///< a scene is present
     bool wanted = false;        ///< and it has a port for the device
     Role role = Role::kMass;    ///< in all its ports
     std::uint32_t version = 0;  ///< +1 with every change of the above

@@ -12,7 +12,7 @@ namespace cordis::device {
 /// What to keep of the life of a device.
 struct TraceSettings {
   std::string file;      ///< empty: nothing is kept
-  double last_s = 10.0;  ///< of the device's life
+  double last_s = 10.0;  ///< span that is kept, the last of the device's life
 };
 
 /// Any driver, with its last samples kept in memory and written as CSV when the device ends:

@@ -21,7 +21,7 @@ struct NodeStart {
   dds::Network network{};                    ///< what `network:` means on this host
   std::uint64_t epoch = 0;  ///< identifies this life of the process: its start time [ns]
 
-  std::optional<SessionKey> key{};  ///< of the session, when it has one
+  std::optional<SessionKey> key{};  ///< key of the session, when it has one
 
   dds::ParticipantConfig config() const;
   /// Lets pass what may command this node.

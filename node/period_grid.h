@@ -17,7 +17,7 @@ namespace cordis::node {
 class PeriodGrid {
  public:
   static constexpr double kLargestShift = 0.01;   ///< by an arrival [periods]
-  static constexpr double kLargestDrift = 0.001;  ///< of the rate, in the long run
+  static constexpr double kLargestDrift = 0.001;  ///< largest error of the rate, in the long run
 
   /// The first period ends at the next middle between two whole multiples of the period: what is
   /// sent at these multiples arrives soon after the middle of a period.

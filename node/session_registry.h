@@ -29,7 +29,7 @@ struct SessionRecord {
   int domain = 0;
   std::string launch_file;             ///< absolute; of the process that began the session
   std::vector<SessionMember> members;  ///< alive
-  dds::Network network{};              ///< of all its processes on this host
+  dds::Network network{};              ///< network of all its processes on this host
 };
 
 /// The sessions that run, in the order of their names. Removes the files of sessions whose

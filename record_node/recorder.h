@@ -27,16 +27,16 @@ struct RecorderConfig {
   std::map<std::string, std::string> idl;  ///< texts of types beyond those of Cordis, by their file
   mcap::Compression compression = mcap::Compression::kZstd;
   std::size_t queue_bytes = std::size_t{12} << 20;
-  std::map<std::string, std::string> about;  ///< of the session: `cordis.session` of the take
+  std::map<std::string, std::string> about;  ///< facts of the session: `cordis.session` of the take
   std::vector<AttachedFile> attached;
   std::vector<std::string> plan_command;  ///< its output is attached as plan.txt; empty: none
 };
 
 /// What a recorder has done so far.
 struct RecorderFigures {
-  std::uint64_t messages = 0;  ///< that came
-  std::uint64_t bytes = 0;     ///< of them
-  std::uint64_t dropped = 0;   ///< of them, because the disk was too slow or full
+  std::uint64_t messages = 0;  ///< received messages
+  std::uint64_t bytes = 0;     ///< their size
+  std::uint64_t dropped = 0;   ///< received messages for which the disk was too slow or full
   std::uint64_t lost = 0;      ///< numbers of writers that never came: lost on the way
   std::uint64_t before = 0;    ///< written before the recorder had found their writers
   std::uint64_t waiting_bytes = 0;

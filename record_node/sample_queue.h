@@ -17,7 +17,7 @@ struct QueuedSample {
   std::uint32_t sequence = 0;
   std::uint64_t log_time_nsec = 0;
   std::uint64_t publish_time_nsec = 0;
-  std::size_t offset = 0;  ///< of its bytes in those of the batch
+  std::size_t offset = 0;  ///< start of its bytes in those of the batch
   std::size_t size = 0;
 };
 

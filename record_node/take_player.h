@@ -22,13 +22,13 @@ struct TakePlayerConfig {
   std::filesystem::path take;
   int domain = 0;
   std::string session;
-  std::optional<node::SessionKey> key{};  ///< of the session
+  std::optional<node::SessionKey> key{};  ///< key of the session
   double rate = 1.0;                      ///< kSlowestRate to kFastestRate
   bool loop = false;
   bool paused = false;                          ///< at the start
   bool waits_for_readers = false;               ///< for one of each topic, before it begins
   double start_s = 0.0;                         ///< from the start of the take
-  std::optional<double> duration_s;             ///< of the take; to its end when absent
+  std::optional<double> duration_s;             ///< length to play; absent: to the end of the take
   std::vector<std::string> topics;              ///< patterns; empty: all but control/*
   std::vector<std::string> excluded;            ///< patterns
   std::map<std::string, std::string> remapped;  ///< names of topics, and those they are played as
@@ -37,7 +37,7 @@ struct TakePlayerConfig {
 /// Where a player is.
 struct TakePlayerFigures {
   double position_s = 0.0;  ///< from the start of the take
-  double length_s = 0.0;    ///< of the take
+  double length_s = 0.0;    ///< length of the take
   double rate = 1.0;
   bool paused = false;
   bool is_over = false;  ///< all was played

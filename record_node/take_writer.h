@@ -26,7 +26,7 @@ class TakeWriter {
   /// What is known of a writer when its first message is written.
   struct Origin {
     std::string process;     ///< SESSION/NODE, or what another program calls itself
-    std::string partitions;  ///< with commas between them
+    std::string partitions;  ///< separated by commas
     bool is_here = false;    ///< on this host, with its clock
   };
   using FindOrigin = std::function<Origin(const dds::WriterId&)>;

@@ -19,7 +19,7 @@ namespace cordis::sim {
 /// What comes before its period begins belongs to none.
 class ArrivalRule {
  public:
-  static constexpr std::size_t kMaxDevices = 64;  ///< of a scene
+  static constexpr std::size_t kMaxDevices = 64;  ///< most devices of a scene
 
   /// What is known of a device.
   struct Device {

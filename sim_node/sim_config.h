@@ -10,7 +10,7 @@ namespace cordis::sim {
 /// The keys of a sim_node's section in a launch file.
 struct SimSection {
   std::string scene_file;     ///< `scene`: as a person wrote it; relative to the launch file
-  config::Place scene_place;  ///< of that path
+  config::Place scene_place;  ///< where that path stands
   /// `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
   double duration_s = 0.0;
   bool force = false;  ///< `force`: a scene that is surely unstable runs all the same
@@ -26,12 +26,12 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 
 /// What a sim_node runs.
 struct SimConfig {
-  double duration_s = 0.0;       ///< of the section
-  bool force = false;            ///< of the section
-  double delay_quantile = 0.95;  ///< of the section
-  std::string signals_for;       ///< of the section
+  double duration_s = 0.0;       ///< duration from the section
+  bool force = false;            ///< `force` of the section
+  double delay_quantile = 0.95;  ///< quantile from the section
+  std::string signals_for;       ///< `signals_for` of the section
   scene::Scene scene;            ///< what the file of the section says
-  SceneSource source;            ///< of it
+  SceneSource source;            ///< source of the scene
 };
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,

@@ -22,9 +22,9 @@ enum class MessageType : std::uint8_t { kFrame = 1, kSignals = 2, kTopology = 3,
 /// What stands before the positions of a frame. Positions and link states follow as they came over
 /// DDS.
 struct FrameHeader {
-  std::uint32_t sequence = 0;  ///< of viz_node, +1 per frame; what a page acknowledges
+  std::uint32_t sequence = 0;  ///< counts what viz_node has shown, from 1; a page acknowledges it
   std::uint32_t scene = 0;     ///< the description it belongs to
-  std::uint64_t frame = 0;     ///< of sim_node
+  std::uint64_t frame = 0;     ///< number that sim_node gave it
   std::uint64_t step = 0;
   std::int64_t taken_nsec = 0;  ///< CLOCK_MONOTONIC when sim_node took it
   std::int64_t sent_nsec = 0;   ///< CLOCK_MONOTONIC when viz_node sent it
@@ -44,7 +44,7 @@ std::string encode_signals(const msg::SceneSignals& signals, std::uint32_t scene
 /// A block of sound: header, then steps x sounds float32. The block has been checked.
 std::string encode_sound(const msg::SceneSound& sound, std::uint32_t scene);
 
-inline constexpr std::uint16_t kNoStateMachine = 65535;  ///< of a link in the topology
+inline constexpr std::uint16_t kNoStateMachine = 65535;  ///< the link has no states
 
 /// What a page needs once per scene: radii, masses, link ends, state machines of links, kinds. The description has been checked.
 std::string encode_topology(const msg::SceneDescription& description, std::uint32_t scene);

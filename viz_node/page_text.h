@@ -37,7 +37,7 @@ struct MirrorFigures {
   std::uint64_t frames = 0;          ///< handed to the pages
   std::uint64_t refused = 0;         ///< messages that did not fit their description
   std::uint64_t lost = 0;            ///< frames of sim_node that never came
-  double frame_rate_hz = 0.0;        ///< of the description; 0 without one
+  double frame_rate_hz = 0.0;        ///< rate from the description; 0 without one
   std::int64_t last_frame_nsec = 0;  ///< CLOCK_MONOTONIC when the newest came; 0: none yet
 };
 
@@ -46,8 +46,8 @@ inline constexpr std::int64_t kLostAfterNsec = 1'600'000'000;
 
 /// What the launch file lets pages do beyond the commands that change no scene.
 struct PageRights {
-  std::vector<std::string> scenes;  ///< that they may load, relative to the launch file
-  bool parameters = false;          ///< whether they may set parameters
+  std::vector<std::string> scenes;  ///< scenes that they may load, relative to the launch file
+  bool parameters = false;          ///< they may set parameters
 };
 
 /// @param may_command  whether viz_node takes commands and a hand of the page
@@ -76,10 +76,10 @@ std::optional<bool> read_sound_request(std::string_view text);
 /// What a page wants of the simulation.
 struct PageCommand {
   msg::ControlVerb verb = msg::VERB_PAUSE;  ///< or resume, step, reset, get, set, load, seek, rate
-  std::uint64_t steps = 1;                  ///< of step
-  double value = 0.0;                       ///< of seek: the time of the take [s]; of rate; of set
-  std::string parameter;                    ///< of set: NAME.PARAMETER
-  std::uint64_t scene = 0;                  ///< of load: which of the scenes that pages may load
+  std::uint64_t steps = 1;                  ///< for `step`
+  double value = 0.0;       ///< for `seek`: the time in the take [s]; for `rate`; for `set`
+  std::string parameter;    ///< for `set`: NAME.PARAMETER
+  std::uint64_t scene = 0;  ///< for `load`: which of the scenes that pages may load
 };
 
 /// Reads `{"type": "command", "verb": "step", "steps": 10}`, or `"verb": "seek", "value": 2.5`; nothing when `text` is anything else,

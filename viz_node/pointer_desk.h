@@ -40,10 +40,10 @@ std::optional<DragRequest> read_drag_request(std::string_view text);
 class PointerDesk {
  public:
   static constexpr std::int64_t kSilenceNsec = 500'000'000;
-  static constexpr std::int64_t kAbsentNsec = 1'600'000'000;  ///< of the device, without a state
+  static constexpr std::int64_t kAbsentNsec = 1'600'000'000;  ///< without a state of the device
   static constexpr std::int64_t kMinPauseNsec = 2'000'000;
   static constexpr double kMaxSpeed = 2.0;       ///< per coordinate [m/s]
-  static constexpr double kMaxCoordinate = 4.0;  ///< of a coordinate from its rest [m]
+  static constexpr double kMaxCoordinate = 4.0;  ///< from the rest of a coordinate [m]
 
   /// @param epoch    of this viz_node
   /// @param publish  writes a target; called with the lock held, must not wait

@@ -71,7 +71,7 @@ class SceneMirror {
 
   std::shared_ptr<const ShownScene> scene() const;  ///< nullptr before the first description
   std::shared_ptr<const ShownFrame> frame()
-      const;  ///< of the present scene; nullptr before its first
+      const;  ///< newest frame of the present scene; nullptr before its first
   /// The oldest batch kept with a number above `after`; nullptr when there is none.
   std::shared_ptr<const ShownSignals> signals_after(std::uint64_t after) const;
   /// The oldest block kept with a number above `after`, whose numbers have gaps where a slow caller

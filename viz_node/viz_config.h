@@ -15,7 +15,7 @@ struct VizConfig {
                                       ///< machines out
   int port = 8080;                    ///< 0 takes any free port
   double rate_hz = 25.0;              ///< most frames per second that pages get
-  PageRights rights;                  ///< of pages
+  PageRights rights;                  ///< rights of pages
 };
 
 /// Reads the keys port, address, rate_hz, scenes and parameters, all optional. What is wrong goes to `problems`.

@@ -16,7 +16,7 @@ struct BenchReport {
   EngineFigures engine;
   std::optional<ForceLoopFigures> force_loop;
   std::string force_loop_reason;  ///< why there is none
-  double seconds = 0.0;           ///< that the bench took
+  double seconds = 0.0;           ///< duration of the bench
 };
 
 /// A table for a person. Ends with a newline.

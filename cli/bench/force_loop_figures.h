@@ -13,7 +13,7 @@ struct ForceLoopFigures {
   double p50_us = 0.0;           ///< in real time at 1 kHz, from the sample to the motors
   double p99_us = 0.0;
   double longest_us = 0.0;
-  double late_share = 0.0;  ///< of the ticks of the scene, by a period or more
+  double late_share = 0.0;  ///< share of the scene's ticks that were late by a period or more
 };
 
 /// Runs two sessions of this program with the launch file of its own that it writes.

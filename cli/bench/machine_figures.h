@@ -13,9 +13,9 @@ namespace cordis::cli {
 struct MachineFigures {
   std::string processor;  ///< its model, as processor_name() gives it
   unsigned cores = 0;
-  std::optional<double> stolen_share;  ///< of processor time, by a hypervisor
+  std::optional<double> stolen_share;  ///< share of processor time that a hypervisor took
   std::optional<double> load;          ///< programs that want a core, of the last minute
-  std::optional<double> lowest_mhz;    ///< of the cores at begin and end, those that slept included
+  std::optional<double> lowest_mhz;    ///< slowest core at begin and end, even asleep
   std::optional<double> highest_mhz;
 
   /// What disturbed the measurement, a sentence each on one line; empty when nothing does.

@@ -170,7 +170,7 @@ void add_check_verb(CommandLine& line) {
       "Stable means that the step is below the limit in every pose and every combination of\n"
       "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "What `cordis run` would refuse or warn of stands below the report, in the same words.\n"
-      "Of a take every CRC, index and count is checked; it says at which byte what is wrong.\n"
+      "Every CRC, index and count of a take is checked; it says at which byte what is wrong.\n"
       "Paths in a file on standard input begin in the present folder; of a launch file there the\n"
       "scene and its devices are checked, and no other nodes.\n"
       "Exit code: 0 `cordis run` plays it, or the take is whole, 1 a check failed itself,\n"

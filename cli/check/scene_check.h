@@ -19,8 +19,8 @@ namespace cordis::cli {
 /// What a person asked for.
 struct CheckOptions {
   std::string file;                    ///< a scene, or a launch file
-  std::optional<std::string> text;     ///< of the file, where it is no file: "-", standard input
-  std::vector<std::string> overrides;  ///< of a launch file: words `name.key=value`
+  std::optional<std::string> text;     ///< content of a file that is no file: "-", standard input
+  std::vector<std::string> overrides;  ///< words `name.key=value` for a launch file
   std::string json_file;               ///< empty: none; "-": instead of the text
   /// The upper end of the band that matters; 0: that of the scene's `accuracy`, or 100 Hz.
   double band_hz = 0.0;
@@ -34,7 +34,7 @@ struct PortCheck {
   plan::PortLoad load;
   double min_device_viscosity = 0.0;       ///< role mass, for any hand: what it must have [N s/m]
   double largest_hand_stiffness = 0.0;     ///< role liaison [N/m]
-  std::vector<sim::DeviceAtPort> devices;  ///< of the launch file
+  std::vector<sim::DeviceAtPort> devices;  ///< devices of the launch file
 };
 
 struct SceneCheck {
@@ -42,12 +42,12 @@ struct SceneCheck {
   CheckOptions options;
   std::optional<config::Launch> launch;  ///< empty for a scene
   config::Problems problems;             ///< as `cordis run` finds them; errors refuse the run
-  int delay_periods = 1;                 ///< of the loop through a device: 0 in lockstep
+  int delay_periods = 1;                 ///< delay of the loop through a device: 0 in lockstep
   plan::Plan plan;
   std::optional<plan::RateSelection> choice;  ///< for the `accuracy` of the scene
   std::vector<PortCheck> ports;
   double step_nsec = 0.0;        ///< median, measured on this machine; 0: not measured
-  double worst_step_nsec = 0.0;  ///< of the same trial
+  double worst_step_nsec = 0.0;  ///< longest step of the same trial
   std::size_t measured_steps = 0;
 
   /// Wall time per simulated time.

@@ -102,7 +102,7 @@ void add_chronogram_verb(CommandLine& line) {
   verb.option("--every", "TIME", words->every, "Time from one to the next [120ms]");
   verb.option("--layout", "LAYOUT", words->layout,
               "row, grid, or overlay: one over the other, the first ones faint [row]");
-  verb.option("--width", "PIXELS", words->width, "Of the figure; its height follows [1200]");
+  verb.option("--width", "PIXELS", words->width, "Width of the figure; its height follows [1200]");
   add_view_options(verb, words->view, "light");
   verb.examples(
       "All moments have one scale, which a ruler shows. A launch file is simulated with its\n"

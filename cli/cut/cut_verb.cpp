@@ -90,7 +90,8 @@ void add_cut_verb(CommandLine& line) {
   verb.option("--duration", "TIME", words->duration, "How much to keep [all that follows]");
   verb.list("--topics", "A,B,C", words->topics,
             "Topics to keep; patterns with * and ? are allowed [all]");
-  verb.option("--compression", "NAME", words->compression, "Of the new take: none, lz4 or zstd");
+  verb.option("--compression", "NAME", words->compression,
+              "Codec of the new take: none, lz4 or zstd");
   verb.examples(
       "Attachments and metadata are kept. Topics that a session keeps for late joiners begin\n"
       "with their last message before the cut.\n"

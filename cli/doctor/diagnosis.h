@@ -11,7 +11,7 @@
 namespace cordis::cli {
 
 struct DiagnosisOptions {
-  std::chrono::nanoseconds duration{std::chrono::seconds(3)};  ///< of the measurement
+  std::chrono::nanoseconds duration{std::chrono::seconds(3)};  ///< length of the measurement
   int domain = 0;
   int page_port = 8080;
   std::string interface {};  ///< name or address; empty: none is to be checked

@@ -20,7 +20,7 @@ struct Finding {
   Level level = Level::kOk;
   std::string text{};                   ///< what was found, in a sentence
   std::string advice{};                 ///< what to do; empty when there is nothing to do
-  std::vector<std::string> commands{};  ///< to be typed as they are
+  std::vector<std::string> commands{};  ///< ready to be typed as they are
   std::vector<std::string> table{};     ///< lines of figures
   nlohmann::json values = nlohmann::json::object();  ///< the figures, for programs
 };

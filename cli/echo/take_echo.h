@@ -15,7 +15,7 @@ struct TakeEcho {
   std::string take;
   std::string topic;                   ///< a topic, or a pattern; empty: all
   std::optional<std::uint64_t> count;  ///< not more than so many
-  std::vector<std::string> idl_files;  ///< of types that the take has no schema of
+  std::vector<std::string> idl_files;  ///< describe types for which the take has no schema
 };
 
 /// True if the word names a take and no session: an existing one, or by its ending.

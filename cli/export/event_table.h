@@ -20,8 +20,8 @@ struct EventRow {
   std::string from;
   std::string to;
   std::string quantity;   ///< what triggered it; empty when it was forced
-  double value = 0.0;     ///< of the quantity, in its own SI unit
-  double energy_j = 0.0;  ///< that the change added
+  double value = 0.0;     ///< value of the quantity, in its own SI unit
+  double energy_j = 0.0;  ///< energy that the change added
 };
 
 /// The word of the scene language for what triggered a change; empty when it was forced.

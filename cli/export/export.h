@@ -13,8 +13,8 @@ namespace cordis::cli {
 
 /// What a person asks of `cordis export`; the rows are tick, frame, step or a span of time.
 struct ExportOptions : TableOptions {
-  std::size_t scene = 1;    ///< of the scenes of the take
-  double start_s = 0.0;     ///< of the time of the scene
+  std::size_t scene = 1;    ///< number of a scene in the take
+  double start_s = 0.0;     ///< start, in the time of the scene
   double duration_s = 0.0;  ///< 0: to its end
 };
 

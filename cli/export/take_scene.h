@@ -13,8 +13,8 @@ namespace cordis::cli {
 /// What was played from one start, load or reset to the next: one version of one epoch.
 struct TakeScene {
   msg::SceneDescription description;
-  std::size_t number = 0;  ///< of the scenes of the take, from 1
-  std::size_t count = 0;   ///< of them all
+  std::size_t number = 0;  ///< number among the scenes of the take, from 1
+  std::size_t count = 0;   ///< how many scenes the take has
 
   template <class Message>
   bool has(const Message& message) const {

@@ -22,7 +22,7 @@ class TickSteps {
   /// Plays the next turn. @return true if a gesture period of the scene was completed
   bool play_turn() noexcept;
 
-  std::uint64_t step() const noexcept { return step_; }  ///< of the scene
+  std::uint64_t step() const noexcept { return step_; }  ///< steps of the scene so far
   bool is_in_scene() const noexcept { return version_ == wanted_version_; }
 
  private:

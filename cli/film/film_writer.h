@@ -26,7 +26,7 @@ class FilmWriter {
   /// Waits until everything is written. @throws likewise.
   void finish();
 
-  std::uint64_t count() const noexcept { return count_; }  ///< of images
+  std::uint64_t count() const noexcept { return count_; }  ///< images written
 
  private:
   void start_ffmpeg(int width, int height, double frames_per_s);

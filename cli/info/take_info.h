@@ -10,9 +10,9 @@ namespace cordis::cli {
 
 /// Messages that a recorder missed, as its take says; 0 where it says nothing.
 struct MissedMessages {
-  std::uint64_t dropped = 0;   ///< that came, and found no room before the disk
-  std::uint64_t lost = 0;      ///< that did not come
-  std::uint64_t replaced = 0;  ///< of these, on topics whose writer keeps its newest message alone
+  std::uint64_t dropped = 0;   ///< arrived, and found no room before the disk
+  std::uint64_t lost = 0;      ///< never arrived
+  std::uint64_t replaced = 0;  ///< part of `lost`: a writer that keeps its newest message alone
   std::uint64_t before = 0;    ///< written before the recorder had found their writers
 
   /// True if the recording lacks what it could have had: a frame that a newer one has replaced

@@ -11,7 +11,7 @@ namespace cordis::cli {
 
 struct LabScene {
   scene::Scene scene;
-  double duration_s = 0.0;  ///< of a run
+  double duration_s = 0.0;  ///< length of a run
   plan::InputTrajectory trajectory;
   std::vector<std::string> ports;  ///< what each port does, for a person
 };

@@ -44,7 +44,7 @@ void add_lab_verb(CommandLine& line) {
   verb.required_word("SCENE", options.file, "A scene, or a launch file whose devices play");
   verb.option("--out", "DIR", options.folder, "Where the results go [lab]");
   verb.option("--duration", "TIME", words->duration,
-              "Of a run, in simulated time [over_s of the scene, or 2s]");
+              "Length of a run, in simulated time [over_s of the scene, or 2s]");
   verb.option("--jobs", "COUNT", words->jobs, "Runs at the same time [1]");
   verb.flag("--quick", options.quick, "Few rates, within half a minute");
   verb.flag("--again", options.again, "Forget what an earlier lab has left in the folder");

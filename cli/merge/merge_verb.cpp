@@ -46,7 +46,8 @@ void add_merge_verb(CommandLine& line) {
   verb.required_word("TAKE", words->first, "A take: an MCAP file");
   verb.more_words("TAKE...", words->others, "The others");
   verb.option("-o,--output", "FILE", words->output, "The new take");
-  verb.option("--compression", "NAME", words->compression, "Of the new take: none, lz4 or zstd");
+  verb.option("--compression", "NAME", words->compression,
+              "Codec of the new take: none, lz4 or zstd");
   verb.examples(
       "Messages are ordered by the time at which they were received. Equal channels become one.\n"
       "Attachments and metadata of the same name and other contents get the name of their take\n"

@@ -111,7 +111,7 @@ void add_plot_verb(CommandLine& line) {
   verb.list("--signals", "NAME,...", words->signals, "Which signals [all]");
   verb.option("--duration", "TIME", words->duration,
               "How much of the scene [all of a take, duration_s of a launch file]");
-  verb.option("--width", "PIXELS", words->width, "Of the figure; its height follows [900]");
+  verb.option("--width", "PIXELS", words->width, "Width of the figure; its height follows [900]");
   verb.option("--theme", "THEME", words->view.theme, "dark or light [light]");
   verb.examples(
       "Signals of one unit share a plot. All values count: of those that fall on one pixel the\n"

@@ -15,10 +15,10 @@ namespace cordis::cli {
 
 /// How far the MATs of a frame are from those of the scene that is computed.
 struct FrameDifference {
-  std::uint64_t version = 0;  ///< of the description
-  std::uint64_t step = 0;     ///< of the frame
+  std::uint64_t version = 0;  ///< version of the description
+  std::uint64_t step = 0;     ///< step of the frame
   double time_s = 0.0;        ///< simulated
-  double largest_m = 0.0;     ///< of the distances between the places of a MAT
+  double largest_m = 0.0;     ///< largest distance between the two places of a MAT
   std::string mat;            ///< which one it is
 };
 
@@ -26,9 +26,9 @@ struct FrameDifference {
 struct FrameFindings {
   std::uint64_t frames = 0;              ///< compared
   std::uint64_t equal = 0;               ///< by hash; by positions where hashes are not comparable
-  std::uint64_t unmatched = 0;           ///< of steps that the computed scene does not pass
-  std::optional<FrameDifference> first;  ///< that is not equal
-  std::optional<FrameDifference> largest;  ///< of all
+  std::uint64_t unmatched = 0;           ///< frames of steps that the computed scene does not pass
+  std::optional<FrameDifference> first;  ///< first frame that is not equal
+  std::optional<FrameDifference> largest;  ///< largest difference of all frames
   double sum_of_squares_m2 = 0.0;          ///< over all MATs of all frames
   std::uint64_t distances = 0;             ///< behind that sum
   std::uint64_t beyond = 0;                ///< frames after the last computed step
@@ -41,9 +41,9 @@ class FrameCheck {
  public:
   /// How a frame finds its step, and when it is equal.
   enum class By : std::uint8_t {
-    kHash,      ///< the same step, the same hash
-    kPosition,  ///< the same step, positions within the tolerance: of another hash version
-    kTime       ///< the same simulated time: of another model
+    kHash,      ///< same step, same hash
+    kPosition,  ///< same step, positions within the tolerance: for another hash version
+    kTime       ///< same simulated time: for another model
   };
   /// @param take  must outlive this
   FrameCheck(TakeReader& take, By by, double tolerance_m);

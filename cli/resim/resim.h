@@ -28,16 +28,16 @@ struct ResimResult {
   std::vector<FrameCheck::Computed> computed;
   std::string scene;  ///< name of the last one
   msg::InputClock clock = msg::PACE_REALTIME;
-  std::string engine_version;  ///< of the take
+  std::string engine_version;  ///< engine that wrote the take
   std::uint32_t hash_version = 0;
-  std::string integrator;     ///< of the take
-  std::uint64_t steps = 0;    ///< of the last scene
-  std::uint64_t samples = 0;  ///< of devices
+  std::string integrator;     ///< integrator of the take
+  std::uint64_t steps = 0;    ///< steps of the last scene
+  std::uint64_t samples = 0;  ///< samples from devices
   std::uint64_t commands = 0;
   std::uint64_t state_hash = 0;   ///< after the last step
   double played_s = 0.0;          ///< simulated, of all scenes
-  double took_s = 0.0;            ///< of the clock on the wall, for the steps
-  std::uint64_t other_lives = 0;  ///< of sim_node in the take, which are left out
+  double took_s = 0.0;            ///< wall time of the steps
+  std::uint64_t other_lives = 0;  ///< lives of sim_node in the take that are left out
   std::string loss;               ///< what the take lacks; empty: nothing
   std::string failure;            ///< the scene diverged; empty: it did not
 

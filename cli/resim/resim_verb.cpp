@@ -95,7 +95,7 @@ void add_resim_verb(CommandLine& line) {
   verb.option("--integrator", "NAME", words->options.integrator,
               "Another integrator under the same hand");
   verb.option("--tolerance", "M", words->tolerance,
-              "Of positions, where hashes are of another version [1e-6]");
+              "For positions, where hashes are of another version [1e-6]");
   verb.flag("--expect", words->expects,
             "For a test: any take that is not whole and equal, hash for hash, is a failure");
   verb.flag("--rehash", words->rehashes,

@@ -14,9 +14,9 @@ namespace cordis::cli {
 class MachineWatch {
  public:
   static constexpr std::uint64_t kRepeated = 3;     ///< late ticks of all nodes
-  static constexpr double kManyLateShare = 0.01;    ///< of timers; `cordis doctor` warns of it too
+  static constexpr double kManyLateShare = 0.01;    ///< share of timers; as in `cordis doctor`
   static constexpr double kLongStallS = 0.01;       ///< likewise; half of the watchdog of a device
-  static constexpr double kMuchStolenShare = 0.01;  ///< of processor time; likewise
+  static constexpr double kMuchStolenShare = 0.01;  ///< share of processor time; likewise
 
   /// @param figures  what the watch has seen so far
   explicit MachineWatch(std::function<machine::TimerFigures()> figures);

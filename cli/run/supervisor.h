@@ -17,7 +17,7 @@ struct Command {
   std::vector<std::string> words;  ///< path of the program, then its arguments
   int stop_stage = 0;              ///< the smallest is stopped first
   bool drives_motors = false;      ///< it gets StopPlan::kLastFade to let go, whoever ends it
-  bool respawn = false;            ///< whether it starts again when it dies, as NodeLife says
+  bool respawn = false;            ///< it starts again when it dies, as NodeLife says
 };
 
 /// Receives what happens to the processes, which are numbered as the commands were, and decides when

@@ -50,7 +50,7 @@ struct SourceWords {
   std::vector<std::string> overrides;
   std::string scene;   ///< number in a take
   std::string from;    ///< a time
-  std::string domain;  ///< of a session
+  std::string domain;  ///< DDS domain of a session
 };
 
 /// Adds the words SOURCE and [words], and the options --scene, --from and --domain.

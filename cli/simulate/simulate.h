@@ -13,7 +13,7 @@ namespace cordis::cli {
 /// time.
 struct SimulateOptions : TableOptions {
   std::string file;                    ///< a scene or a launch file
-  std::vector<std::string> overrides;  ///< of a launch file
+  std::vector<std::string> overrides;  ///< words `name.key=value` for a launch file
   double duration_s = 0.0;             ///< 0: `duration_s` of the sim_node
   std::string summary_file;
   std::string state_file;  ///< for the state at the end
@@ -34,8 +34,8 @@ struct SimulateResult {
   std::uint64_t row_count = 0;
   std::uint64_t event_count = 0;
   std::uint64_t lost_events = 0;
-  double wall_s = 0.0;      ///< of the simulation alone
-  double sound_peak = 0.0;  ///< of the sound file; 1 is full scale
+  double wall_s = 0.0;      ///< wall time of the simulation alone
+  double sound_peak = 0.0;  ///< peak of the sound file; 1 is full scale
 };
 
 /// Makes all files first, then plays. Files keep what was written when the scene diverges or a person stops

@@ -23,7 +23,7 @@ class ColumnSummary {
     sum_of_squares_ += value * value;
   }
 
-  std::uint64_t count() const noexcept { return count_; }  ///< of the finite values
+  std::uint64_t count() const noexcept { return count_; }  ///< number of finite values
   double least() const noexcept { return least_; }
   double largest() const noexcept { return largest_; }
   double last() const noexcept { return last_; }

@@ -33,7 +33,7 @@ class SoundFile {
   /// Completes the file; to be called once. @throws likewise.
   void finish();
 
-  double rate_hz() const noexcept;  ///< of the file
+  double rate_hz() const noexcept;  ///< sampling rate of the file
   /// The largest sample so far, by its amount; 1 is full scale.
   double peak() const noexcept;
 

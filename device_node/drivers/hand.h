@@ -10,11 +10,11 @@ namespace cordis::device {
 
 /// What a hand is made of. SI units.
 struct HandSettings {
-  double mass_kg = 0.15;                    ///< of finger and hand, > 0
-  double stiffness_n_per_m = 400.0;         ///< of the spring to the target, > 0
-  double viscosity_n_s_per_m = 8.0;         ///< of the damper to the target, >= 0
+  double mass_kg = 0.15;                    ///< finger and hand together, > 0
+  double stiffness_n_per_m = 400.0;         ///< spring to the target, > 0
+  double viscosity_n_s_per_m = 8.0;         ///< damper to the target, >= 0
   double finger_n_per_m = 2000.0;           ///< stiffness of the finger tip, > 0
-  double finger_viscosity_n_s_per_m = 2.0;  ///< of the finger tip, >= 0
+  double finger_viscosity_n_s_per_m = 2.0;  ///< viscosity of the finger tip, >= 0
   bool holds = false;                       ///< finger in a ring; else it only pushes down
   /// Most force with which spring and damper draw the hand to its target, > 0.
   double force_limit_n = std::numeric_limits<double>::infinity();

@@ -17,7 +17,7 @@ struct HaplySettings {
   std::array<int, 2> encoder_turns = {1, 0};  ///< likewise
   std::array<double, 2> offsets_deg = {241.0, -61.0};
   std::array<double, 2> counts_per_turn = {10752.0, 10752.0};
-  double torque_limit_n_m = 0.64;  ///< of a motor: near a singular pose no torque gives the force
+  double torque_limit_n_m = 0.64;  ///< per motor: near a singular pose no torque gives the force
 };
 
 /// Request: type, device id, then bytes and floats (IEEE single, little endian). Type 1 configures

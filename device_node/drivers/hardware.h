@@ -96,7 +96,7 @@ class Hardware : public Driver {
   virtual void report_repeats(std::int64_t /*now_nsec*/) noexcept {}
   /// It has listened, and nothing has come at all.
   virtual void fall_silent() noexcept {}
-  virtual void position(AxisValues& position_m) const noexcept = 0;  ///< of the newest sample
+  virtual void position(AxisValues& position_m) const noexcept = 0;  ///< reads the newest sample
 
   const AxisLayout& layout() const noexcept { return layout_; }
 

@@ -6,11 +6,11 @@ namespace cordis::device {
 /// What a key is made of. SI units; positions count from rest, up is positive.
 struct KeySettings {
   double mass_kg = 0.05;                   ///< moving part, > 0
-  double viscosity_n_s_per_m = 1.0;        ///< of the guide, >= 0
+  double viscosity_n_s_per_m = 1.0;        ///< viscosity of the guide, >= 0
   double friction_n = 0.05;                ///< dry (Coulomb) friction, >= 0
   double return_n_per_m = 0.0;             ///< stiffness of a spring that brings it to rest, >= 0
   double stop_n_per_m = 20000.0;           ///< stiffness of the two end stops, > 0
-  double stop_viscosity_n_s_per_m = 20.0;  ///< of the end stops, at least lowest_stop_viscosity()
+  double stop_viscosity_n_s_per_m = 20.0;  ///< end stops, at least lowest_stop_viscosity()
   double motor_limit_n = 30.0;             ///< force at which the motor saturates, > 0
   double lowest_m = -0.04;                 ///< where the lower stop begins
   double highest_m = 0.0;                  ///< where the upper stop begins

@@ -15,14 +15,14 @@ namespace cordis::device {
 
 /// What a simulated keyboard is made of.
 struct MockSettings {
-  KeySettings key;    ///< of every key; its ends of travel are those of the layout
-  HandSettings hand;  ///< of every hand
+  KeySettings key;    ///< applies to every key; its ends of travel are those of the layout
+  HandSettings hand;  ///< applies to every hand
   std::vector<Trajectory> gesture = {Trajectory()};  ///< target of the hands: one, or one each
   std::vector<int> played;                           ///< axes that have a hand on them
   double stagger_s = 0.0;          ///< each hand begins so much later than the one before
   SensorSettings position_sensor;  ///< [m]
   SensorSettings force_sensor;     ///< [N]
-  std::uint64_t seed = 1;          ///< of their noise
+  std::uint64_t seed = 1;          ///< seed of the sensors' noise
 };
 
 /// Reads the keys `key`, `sensor` and `hand` of a mapping whose owner reads the others.

@@ -13,7 +13,7 @@ namespace cordis::device {
 
 /// What holds for the hand of a pointer. SI units.
 struct PointerSettings {
-  double speed_limit_m_per_s = 1.0;  ///< of its target, > 0
+  double speed_limit_m_per_s = 1.0;  ///< largest speed of its target, > 0
   double silence_s = kPageSilence;   ///< without a word from the page, after which it lets go, > 0
   double fade_s = 0.15;              ///< over which a hand takes hold and lets go, > 0
   /// The device is away while no page holds it, so that the next strongest node plays it.

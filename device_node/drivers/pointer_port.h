@@ -13,16 +13,16 @@ inline constexpr double kPageSilence = 0.5;
 
 /// Where the hand on a page wants the axes.
 struct PointerTarget {
-  std::uint64_t epoch = 0;   ///< of the viz_node
-  std::uint64_t number = 0;  ///< of its message
+  std::uint64_t epoch = 0;   ///< epoch of the viz_node
+  std::uint64_t number = 0;  ///< number of its message
   bool holds = false;        ///< the page holds the device
   std::uint32_t held = 0;    ///< bit n: axis n is held
-  AxisValues target_m{};     ///< of the first target of a hold: where the device is now
+  AxisValues target_m{};     ///< at the first target of a hold: where the device is now
 };
 
 /// What that hand feels.
 struct PointerFeel {
-  std::uint64_t epoch = 0;        ///< of the viz_node that is followed, or was last; 0: none yet
+  std::uint64_t epoch = 0;        ///< epoch of the viz_node followed now or last; 0: none yet
   std::uint64_t felt_number = 0;  ///< newest target whose force is at the motors; 0: none yet
   std::int64_t felt_nsec = 0;     ///< when it came there [CLOCK_MONOTONIC]
   bool holds = false;

@@ -11,7 +11,7 @@ namespace cordis::device {
 
 /// What a device of a take gave, period by period.
 struct RecordedHand {
-  double rate_hz = 1000.0;         ///< of its samples
+  double rate_hz = 1000.0;         ///< rate of its samples
   std::vector<AxisValues> values;  ///< one per period: positions [m], or forces [N]
   bool is_empty() const noexcept { return values.empty(); }
 };

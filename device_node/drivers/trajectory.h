@@ -35,7 +35,7 @@ class Trajectory {
   /// @throws std::invalid_argument when moves overlap, run backward, or do not fit the period
   Trajectory(double start, std::vector<Move> moves, Shape shape, double period_s);
 
-  double value_at(double time_s) const noexcept;  ///< that of 0 s for an earlier time
+  double value_at(double time_s) const noexcept;  ///< value at 0 s for an earlier time
   double rate_at(double time_s) const noexcept;   ///< its derivative [1/s]
 
  private:

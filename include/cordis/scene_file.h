@@ -41,7 +41,7 @@ class SceneFile {
   /// no allocation. Precondition: room for as many values as signals() has names.
   void read_signals(const engine::World& world, double* values) const noexcept;
 
-  std::string warnings() const;  ///< of the file, a line each; empty when there are none
+  std::string warnings() const;  ///< warnings about the file, a line each; may be empty
 
  private:
   struct Content;

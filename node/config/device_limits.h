@@ -12,14 +12,14 @@ namespace cordis::config {
 /// The part of a device file that a scene is held against. SI units.
 struct DeviceLimits {
   int axis_count = 1;
-  int coordinate_count = 1;  ///< of the handle: the axes, or what an end-effector map makes of them
+  int coordinate_count = 1;  ///< the axes, or what an end-effector map makes of them
   /// At least the largest eigenvalue of A A^T, A being the end-effector map: by so much a
   /// coordinate of the handle may be lighter than an axis, and have less viscosity.
   double inertia_ratio = 1.0;
   double rate_hz = 1000.0;
   double lowest_m = -0.04;  ///< workspace of an axis; rest is 0, up is positive
   double highest_m = 0.0;
-  double key_pitch_m = 0.0;  ///< of a key, which stands side by side with the next; 0: no keyboard
+  double key_pitch_m = 0.0;  ///< width of a key, from which the next one follows; 0: no keyboard
   double force_limit_n = 20.0;
   /// Travel of each coordinate, from stop to stop while the others are free; 0: unknown.
   std::array<double, kMaxAxes> coordinate_travel_m{};
@@ -31,7 +31,7 @@ struct DeviceLimits {
   double viscosity_n_s_per_m = 0.0;      ///< 0: unknown
   double stiffness_limit_n_per_m = 0.0;  ///< as declared; 0: what follows from the viscosity
   double damping_limit_n_s_per_m = 0.0;  ///< as declared; 0: likewise
-  int delay_periods = 0;                 ///< that the device adds on purpose
+  int delay_periods = 0;                 ///< delay that the device adds on purpose
 
   /// True if all coordinates have the same travel from their rest.
   bool coordinates_are_alike() const noexcept;

@@ -32,9 +32,9 @@ struct KeyRequest {
   std::string key;
   KeyKind kind = KeyKind::kAny;
   bool required = false;
-  Range range;                       ///< of numbers, formulas and integers
-  std::vector<std::string> choices;  ///< of a choice
-  std::size_t length = 0;            ///< of a sequence of numbers; 0: any
+  Range range;                       ///< range of numbers, formulas and integers
+  std::vector<std::string> choices;  ///< allowed words of a choice
+  std::size_t length = 0;            ///< length of a sequence of numbers; 0: any
   std::string fallback;              ///< as a file would say it; empty: none
   Place mapping;                     ///< where the mapping of the key stands
 };

@@ -28,11 +28,11 @@ const char* clock_word(Clock clock) noexcept;
 struct LaunchNode {
   std::string name;  ///< unique within the session; also the name of the device for a device_node
   std::string program;   ///< sim_node, device_node, viz_node or record_node
-  bool required = true;  ///< whether the session ends when this node ends for good
-  bool respawn = true;   ///< whether the launcher starts it again when it dies
+  bool required = true;  ///< the session ends when this node ends for good
+  bool respawn = true;   ///< the launcher starts it again when it dies
   bool belongs = true;   ///< false: it is for sessions with another clock (`clock`)
   Value section;         ///< its mapping without launcher_keys(); the node reads it itself
-  Place place;           ///< of the name
+  Place place;           ///< where the name stands
 };
 
 /// The keys of a node that the launcher reads: `node`, `required`, `respawn`, `clock`. All others belong to

@@ -3,6 +3,6 @@
 
 namespace cordis::config {
 
-inline constexpr int kMaxAxes = 16;  ///< of a device: MAX_AXES of idl/gesture.idl
+inline constexpr int kMaxAxes = 16;  ///< most axes of a device: MAX_AXES of idl/gesture.idl
 
 }  // namespace cordis::config

@@ -9,7 +9,7 @@
 
 namespace cordis::config {
 
-inline constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;  ///< that a person writes
+inline constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;  ///< largest file to be read
 
 /// Reads one YAML file: one document of at most `max_bytes`, 64 levels and a million values, in UTF-8.
 ///

@@ -9,7 +9,7 @@ namespace cordis::dds {
 
 /// The network of a participant. As it is made: this host alone, on loopback.
 struct Network {
-  std::string address = "127.0.0.1";  ///< of this host, IPv4: what its sockets are bound to
+  std::string address = "127.0.0.1";  ///< IPv4 address of this host: what its sockets are bound to
   std::vector<std::string> peers;     ///< other hosts, IPv4
   std::string server;                 ///< IPv4 of a discovery server; empty: none
   std::uint16_t server_port = 0;

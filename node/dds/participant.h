@@ -21,9 +21,9 @@ struct ParticipantConfig {
   std::string node;       ///< name of the node, shown by DDS tools
   bool lockstep = false;  ///< quality of service of the gesture topics
   bool standbys = false;  ///< likewise; the same for all processes of a session
-  std::uint32_t wire_version = msg::WIRE_VERSION;  ///< that it speaks; another one in tests alone
+  std::uint32_t wire_version = msg::WIRE_VERSION;  ///< spoken version; another in tests alone
   bool every_partition = false;  ///< its readers receive from all sessions and all other programs
-  Network network{};             ///< the same for all processes of a session on one host
+  Network network{};             ///< equal in all processes of a session on one host
   bool observes = false;         ///< force loops send to it from another thread, 2 ms later
   bool for_loop = false;         ///< a thread that waits on an Arrival takes its samples itself
 };
@@ -33,7 +33,7 @@ using ParticipantPrefix = std::array<std::uint8_t, 12>;
 
 /// Another participant of the domain.
 struct Peer {
-  std::string name;  ///< of a Cordis process: SESSION/NODE
+  std::string name;  ///< SESSION/NODE for a Cordis process
   ParticipantPrefix prefix{};
   std::string process;               ///< as process_identity(); of other programs what they say
   std::uint16_t discovery_port = 0;  ///< at the address of this participant; 0: it is elsewhere

@@ -15,7 +15,7 @@ std::string process_identity();
 enum class ProcessState : std::uint8_t {
   kAlive,   ///< perhaps stopped
   kEnded,   ///< perhaps not yet waited for by its parent
-  kUnknown  ///< of another host or process namespace, or not a line of process_identity()
+  kUnknown  ///< another host or process namespace, or not a line of process_identity()
 };
 
 ProcessState state_of(std::string_view identity) noexcept;

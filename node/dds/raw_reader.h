@@ -12,12 +12,12 @@ namespace cordis::dds {
 
 /// One message as it came.
 struct RawSample {
-  const std::uint8_t* data = nullptr;  ///< with its 4 bytes of encapsulation
+  const std::uint8_t* data = nullptr;  ///< begins with 4 bytes of encapsulation
   std::size_t size = 0;
   std::int64_t source_nsec = 0;     ///< when it was written, since 1970, by the clock of the writer
   std::int64_t reception_nsec = 0;  ///< when it came, since 1970
   WriterId writer{};
-  std::uint64_t sequence = 0;  ///< of the writer, from 1
+  std::uint64_t sequence = 0;  ///< number that the writer gave it, from 1
 };
 
 /// Reads all messages of the writers of one topic that offer it just as it is asked for here. Other

@@ -36,8 +36,8 @@ class SampleSocket {
   int file() const noexcept { return file_; }
 
   enum class Taken : std::uint8_t {
-    kNothing,   ///< there is none
-    kDatagram,  ///< the same thread calls deliver() next; no other thread takes one until then
+    kNothing,   ///< no datagram waits
+    kDatagram,  ///< this thread calls deliver() next; no other thread takes one until then
     kBusy       ///< another thread takes or delivers one
   };
   /// Takes a datagram out of the socket. Never blocks.

@@ -31,7 +31,7 @@ struct TopicQos {
   bool transient_local;  ///< transient local, else volatile
   int history_depth;     ///< keep last
   bool asynchronous;     ///< written by a thread of the middleware: for large frames
-  int heartbeat_msec;    ///< of a reliable writer
+  int heartbeat_msec;    ///< period of a reliable writer's heartbeats
   /// The strongest of several writers of a key is read, until it has been silent for so long;
   /// 0: all are read.
   int exclusive_for_msec = 0;

@@ -13,9 +13,9 @@ namespace cordis::machine {
 /// What a TimerWatch has seen since it began.
 struct TimerFigures {
   double watched_s = 0.0;
-  double late_share = 0.0;             ///< of timers woken later than DeadlineRecord::kLateNsec
+  double late_share = 0.0;             ///< timers woken later than DeadlineRecord::kLateNsec
   double worst_s = 0.0;                ///< lateness
-  std::optional<double> stolen_share;  ///< of processor time; nothing where it cannot be read
+  std::optional<double> stolen_share;  ///< share of processor time; nothing where it cannot be read
 };
 
 /// Samples in a thread of its own, at normal priority, how late the machine wakes timers: at 500 Hz

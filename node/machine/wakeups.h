@@ -12,8 +12,8 @@ namespace cordis::machine {
 /// The wake-ups of one core.
 struct CoreWakeups {
   int core = 0;
-  DeadlineRecord normal;                   ///< of a thread of normal priority
-  std::optional<DeadlineRecord> realtime;  ///< of one with SCHED_FIFO; nothing: not permitted
+  DeadlineRecord normal;                   ///< a thread of normal priority
+  std::optional<DeadlineRecord> realtime;  ///< a thread with SCHED_FIFO; nothing: not permitted
 
   /// As the loops of the nodes are woken: with realtime priority where it is permitted.
   const DeadlineRecord& of_loops() const noexcept { return realtime ? *realtime : normal; }

@@ -29,8 +29,8 @@ struct MessageType {
     kText,
     kEnum,
     kStruct,
-    kArray,    ///< of `count` elements
-    kSequence  ///< of any number of elements
+    kArray,    ///< holds `count` elements
+    kSequence  ///< holds any number of elements
   };
   struct Member {
     std::string name;
@@ -38,12 +38,12 @@ struct MessageType {
     bool is_key = false;
   };
   Kind kind = Kind::kBoolean;
-  std::string name;                            ///< of kEnum and kStruct: cordis::msg::SceneFrame
-  std::vector<Member> members;                 ///< of kStruct, at least one
-  std::map<std::int64_t, std::string> words;   ///< of kEnum
-  std::shared_ptr<const MessageType> element;  ///< of kArray and kSequence
-  std::size_t count = 0;                       ///< of kArray, above 0
-  int levels = 1;                              ///< of types within types, with this one
+  std::string name;                           ///< full name of a kEnum or kStruct, with its modules
+  std::vector<Member> members;                ///< members of a kStruct, at least one
+  std::map<std::int64_t, std::string> words;  ///< words of a kEnum
+  std::shared_ptr<const MessageType> element;  ///< element type of a kArray or kSequence
+  std::size_t count = 0;                       ///< elements of a kArray, above 0
+  int levels = 1;                              ///< depth of types within types, this one included
 };
 
 using MessageTypePtr = std::shared_ptr<const MessageType>;

@@ -30,7 +30,7 @@ class MessageCursor {
     std::span<const std::byte> file;
     std::vector<ChunkIndex> chunks;
     std::vector<MessageEntry> loose;   ///< messages outside chunks
-    std::set<std::uint16_t> channels;  ///< that are wanted
+    std::set<std::uint16_t> channels;  ///< wanted channels
   };
   MessageCursor(Source source, const MessageFilter& filter);
 

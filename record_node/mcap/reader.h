@@ -27,7 +27,7 @@ class Reader {
   bool is_whole() const noexcept { return damage_.empty(); }
 
   const std::filesystem::path& path() const noexcept { return path_; }
-  std::uint64_t size() const noexcept { return file_.bytes().size(); }  ///< of the file [bytes]
+  std::uint64_t size() const noexcept { return file_.bytes().size(); }  ///< file size [bytes]
   /// The program that wrote it.
   const std::string& library() const noexcept { return library_; }
   const std::map<std::uint16_t, Schema>& schemas() const noexcept { return summary_.schemas; }

@@ -33,7 +33,7 @@ struct Channel {
 /// One sample. Its data belong to whoever hands it over.
 struct Message {
   std::uint16_t channel_id = 0;
-  std::uint32_t sequence = 0;           ///< of its writer
+  std::uint32_t sequence = 0;           ///< number that its writer gave it
   std::uint64_t log_time_nsec = 0;      ///< when it was received; UNIX epoch
   std::uint64_t publish_time_nsec = 0;  ///< when its writer sent it
   std::span<const std::byte> data;
@@ -73,8 +73,8 @@ struct Statistics {
 struct ChunkIndex {
   std::uint64_t start_nsec = 0;
   std::uint64_t end_nsec = 0;
-  std::uint64_t offset = 0;  ///< of the record, from the start of the file
-  std::uint64_t length = 0;  ///< of the record, with its opcode and length
+  std::uint64_t offset = 0;  ///< start of the record in the file
+  std::uint64_t length = 0;  ///< length of the record, with its opcode and length
   std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< by channel
   std::uint64_t message_index_length = 0;
   std::string compression;

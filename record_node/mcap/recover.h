@@ -14,9 +14,9 @@ namespace cordis::mcap {
 struct Recovery {
   bool was_whole = false;           ///< then the file is as it was
   bool was_closed = false;          ///< false: its recorder died
-  std::filesystem::path path;       ///< of the whole take: without `.part`
-  Statistics statistics;            ///< of what is kept
-  std::uint64_t cut_bytes = 0;      ///< that the torn end had
+  std::filesystem::path path;       ///< path of the whole take: without `.part`
+  Statistics statistics;            ///< figures of what is kept
+  std::uint64_t cut_bytes = 0;      ///< length of the torn end
   std::uint64_t rebuilt_count = 0;  ///< chunks that had no index of their messages
   std::vector<Damage> damages;
 

@@ -30,7 +30,7 @@ struct MissingIndex {
 /// What a file holds, found by reading all of it.
 struct Scan {
   Summary summary;                    ///< as it would have to be
-  std::vector<MissingIndex> missing;  ///< of chunks
+  std::vector<MissingIndex> missing;  ///< chunks whose own index is absent or wrong
   std::vector<MessageEntry> loose;    ///< messages outside chunks: offsets in the file
   std::vector<Damage> damages;        ///< in the order of the file
   /// Chunks that say other times than those of their messages.

@@ -59,7 +59,7 @@ class PortProblems {
     std::string hint;
     std::size_t port = 0;    ///< the first that has it
     std::size_t latest = 0;  ///< and the last so far
-    std::size_t copies = 0;  ///< that have it too
+    std::size_t copies = 0;  ///< number of ports that have it too
   };
 
   void add(Found found) {

@@ -21,8 +21,8 @@ struct PortDemand {
   scene::Role role = scene::Role::kMass;
   double mass = 0.0;     ///< role liaison: of its MAT [kg]
   plan::PortLoad least;  ///< as soon as its liaisons are in their stiffest states
-  plan::PortLoad most;   ///< with all the partners of its sets at once
-  int sub_steps = 1;     ///< of the scene in a gesture period
+  plan::PortLoad most;   ///< load with all the partners of its sets at once
+  int sub_steps = 1;     ///< steps of the scene in a gesture period
   std::vector<std::uint32_t> axes;
   scene::PortNeeds needs;  ///< along each of them
 };
@@ -32,7 +32,7 @@ std::vector<PortDemand> demands_of(const scene::Scene& scene);
 
 /// What is to be said about a device at a port; all empty when nothing is.
 struct PortVerdict {
-  std::vector<std::string> lacks;  ///< of what the port needs, with what the device has
+  std::vector<std::string> lacks;  ///< each names a need of the port, and what the device has
   std::string refusal;      ///< why it must not be given the port, with the number it may have
   std::string uncertainty;  ///< when it may become too stiff for it
 };

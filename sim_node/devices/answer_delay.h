@@ -61,7 +61,7 @@ class AnswerDelays {
   static constexpr double kQuantile = 0.95;
   static constexpr double kGivenUp = 0.02;  ///< [s], or kGivenUpPeriods if longer
   static constexpr double kGivenUpPeriods = 6.0;
-  static constexpr std::int64_t kSilentNsec = 2'000'000'000;  ///< of a process that is not there
+  static constexpr std::int64_t kSilentNsec = 2'000'000'000;  ///< a process so silent is not there
   /// @param quantile  the share of the answers that come within the delay, (0, 1]
   explicit AnswerDelays(double quantile = kQuantile) noexcept : quantile_(quantile) {}
 
@@ -69,7 +69,7 @@ class AnswerDelays {
   struct Report {
     std::uint64_t sample = 0;           ///< its own number
     std::uint64_t answered_sample = 0;  ///< the number of the answer that was felt last
-    double delay_s = 0.0;               ///< of it
+    double delay_s = 0.0;               ///< delay of that answer
   };
 
   /// Reader: measures the process of this epoch from now on, in place of the one that has been

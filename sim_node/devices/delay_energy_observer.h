@@ -26,7 +26,7 @@ namespace cordis::sim {
 /// As long as other things in the scene lose more energy than a loop makes, it is not seen.
 class DelayEnergyObserver {
  public:
-  static constexpr double kShare = 0.98;    ///< of D
+  static constexpr double kShare = 0.98;    ///< counted part of D
   static constexpr double kBudget = 0.001;  ///< [J]
   static constexpr double kOnItsWay = 2.0;  ///< times f . dx of the delay
   static constexpr double kTank = 0.05;     ///< most that A remembers to be below 0 [J]

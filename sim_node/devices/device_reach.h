@@ -32,7 +32,7 @@ struct DeviceReach {
   std::array<double, kCoordinates> travel_m{};  ///< from the rest, in either direction
   std::array<double, kCoordinates> lowest_m{};  ///< ends of the travel, from the rest
   std::array<double, kCoordinates> highest_m{};
-  std::array<double, kCoordinates> force_n{};  ///< of the hand, in either direction
+  std::array<double, kCoordinates> force_n{};  ///< force of the hand, in either direction
 };
 
 /// What a device reports of its travel and its forces; a number of it that makes no sense, or says

@@ -106,7 +106,7 @@ class RefusedDevices {
     std::atomic<std::uint64_t> epoch{0};
     std::atomic<bool> is_refused{true};
     std::atomic<std::int64_t> newest_nsec{0};  ///< sample, or the description
-    std::int64_t kept_nsec = 0;                ///< of the thread that decides
+    std::int64_t kept_nsec = 0;                ///< belongs to the thread that decides
   };
   void evaluate(std::int64_t now_nsec);
   Verdict check(const Known& device) const;

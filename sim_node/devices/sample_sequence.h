@@ -11,7 +11,7 @@ namespace cordis::sim {
 /// `patience` of older numbers in a row restarts the sequence. Real time: O(1), allocates nothing.
 class SampleSequence {
  public:
-  static constexpr double kMaxJump = 1.0;  ///< of the numbers of samples [s]
+  static constexpr double kMaxJump = 1.0;  ///< largest jump of the sample numbers [s]
 
   /// @param rate_hz         samples per second, > 0
   /// @param patience_ticks  samples that make a gap, or a restart when they are older; > 0

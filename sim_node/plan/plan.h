@@ -25,7 +25,7 @@ struct Stability {
   /// states [s].
   double diverging_step = 0.0;
   bool bounded = true;             ///< false: the certificate holds within a Reach alone
-  double step = 0.0;               ///< of the network [s]
+  double step = 0.0;               ///< step of the network [s]
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
   std::optional<Uncertainty> uncertainty;  ///< what keeps every step from being certain

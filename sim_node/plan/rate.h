@@ -10,7 +10,7 @@ namespace cordis::plan {
 /// What a scene asks for instead of a rate.
 struct AccuracyTarget {
   double tolerance = 0.01;      ///< largest relative error of pitch, rate of decay and creep
-  double band_hz = 100.0;       ///< of vibrations up to this frequency
+  double band_hz = 100.0;       ///< highest frequency of vibrations that keep the tolerance
   double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
   double over_s = 0.0;          ///< [s]
 };

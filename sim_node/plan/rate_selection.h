@@ -14,7 +14,7 @@ struct RateSelection {
   double rate_hz = 0.0;     ///< a multiple of the gesture rate
   double needed_hz = 0.0;   ///< the least that serves
   std::string because;      ///< for a person: what asks for so much
-  double error = -1.0;      ///< of positions after over_s, as tried out; < 0: not tried
+  double error = -1.0;      ///< position error after over_s, as tried out; < 0: not tried
   std::string uncertainty;  ///< why the positions are not promised; empty when they are
 };
 

@@ -9,7 +9,7 @@
 namespace cordis::plan {
 
 struct RateSweepOptions {
-  double duration = 2.0;         ///< of a run, at least [s]
+  double duration = 2.0;         ///< length of a run, at least [s]
   double own_hz = 0.0;           ///< the rate of the scene itself
   double highest_factor = 64.0;  ///< the highest rate over the lowest stable one
   bool coarse = false;           ///< twice as much from rung to rung, instead of 1.33 or 1.5 times

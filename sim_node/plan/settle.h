@@ -10,10 +10,10 @@ namespace cordis::plan {
 
 /// What came of settling.
 struct Settled {
-  std::vector<engine::Vec3> position;  ///< of each MAT [m]
+  std::vector<engine::Vec3> position;  ///< position of each MAT [m]
   double force = 0.0;                  ///< the largest on a mass there [N]
   std::uint32_t pulled = 0;            ///< the mass that has it
-  std::uint64_t steps = 0;             ///< that were computed
+  std::uint64_t steps = 0;             ///< number of computed steps
   bool is_finite = true;               ///< false: it diverged; the rest says nothing then
 };
 

@@ -18,12 +18,12 @@ struct NewValue {
 
 struct Command {
   msg::ControlVerb verb = msg::VERB_PAUSE;
-  std::uint64_t steps = 1;         ///< of VERB_STEP
-  std::string scene_file;          ///< of VERB_LOAD
-  std::vector<NewValue> values;    ///< of VERB_SET, at least one
-  std::vector<std::string> names;  ///< of VERB_GET: NAME or NAME.PARAMETER; none: all of the scene
-  std::string links;               ///< of VERB_STATE: name, name[3] or name[2..5]
-  std::string state;               ///< of VERB_STATE
+  std::uint64_t steps = 1;         ///< steps for VERB_STEP
+  std::string scene_file;          ///< file for VERB_LOAD
+  std::vector<NewValue> values;    ///< values for VERB_SET, at least one
+  std::vector<std::string> names;  ///< for VERB_GET: NAME or NAME.PARAMETER; none: all of the scene
+  std::string links;               ///< links for VERB_STATE: name, name[3] or name[2..5]
+  std::string state;               ///< new state for VERB_STATE
 };
 
 inline constexpr long kMaxSingleSteps = 1'000'000'000;

@@ -26,7 +26,7 @@ struct FrameLayout {
 
 /// What is fixed about the frames of a scene.
 struct FrameShape {
-  std::uint64_t version = 1;  ///< of the description
+  std::uint64_t version = 1;  ///< version of the description
   std::size_t mat_count = 0;
   std::size_t signal_count = 0;
   std::size_t rows_per_frame = 1;     ///< rows of signals
@@ -35,7 +35,7 @@ struct FrameShape {
   std::size_t step_signal_count = 0;  ///< signals that are taken after each step
   std::size_t step_rows_per_frame = 0;
   FrameLayout layout;
-  std::size_t link_count = 0;        ///< of all kinds; 0 when no link has states
+  std::size_t link_count = 0;        ///< number of links of all kinds; 0 when no link has states
   std::size_t first_state_link = 0;  ///< number of the first one with states
   std::size_t state_link_count = 0;
 };
@@ -47,20 +47,20 @@ inline constexpr std::uint8_t kLinkIsIdle = 128;
 /// A frame with the signals and events of the ticks before it.
 struct FrameBuffer {
   std::vector<double> positions;         ///< as World::positions()
-  std::vector<std::uint8_t> link_state;  ///< of SceneFrame: per link, or empty
+  std::vector<std::uint8_t> link_state;  ///< link_state of SceneFrame: per link, or empty
   EventRoom events;
   std::vector<double> rows;
   std::size_t row_count = 0;
-  std::uint64_t first_step = 0;          ///< of the first row
+  std::uint64_t first_step = 0;          ///< step of the first row
   std::uint32_t dropped_rows = 0;        ///< before the first row
   std::vector<std::uint32_t> row_steps;  ///< per row: its step less first_step
-  std::vector<double> step_rows;         ///< of the signals that are taken after each step
+  std::vector<double> step_rows;         ///< signals that are taken after each step
   std::size_t step_row_count = 0;
   std::uint64_t first_step_row = 0;     ///< step of the first of them
   std::uint32_t dropped_step_rows = 0;  ///< before the first of them
   std::uint64_t step = 0;
   std::int64_t time_nsec = 0;
-  std::int64_t action_time_nsec = 0;  ///< of the newest device sample; 0: none
+  std::int64_t action_time_nsec = 0;  ///< time of the newest device sample; 0: none
   double simulated_s = 0.0;
 };
 

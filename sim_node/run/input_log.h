@@ -19,9 +19,9 @@ namespace cordis::sim {
 struct InputRecord {
   enum class Kind : std::uint8_t {
     kPositions,  ///< a sample of a device of role mass
-    kForces,     ///< of role liaison
+    kForces,     ///< a sample of a device of role liaison
     kReach,      ///< bounds of a device from now on
-    kCommand,    ///< that was executed
+    kCommand,    ///< a command that was executed
     kHold,       ///< realtime: a turn without play, in which devices are answered
     kRepeat,     ///< a device was sent its last answer again
     kLetGo       ///< devices were let go of
@@ -29,9 +29,9 @@ struct InputRecord {
   Kind kind = Kind::kHold;
   std::uint64_t number = 0;  ///< +1 per input, from 2; 1 is the scene that the session began with
   std::uint64_t turn = 0;    ///< turns that were complete
-  std::uint64_t step = 0;    ///< of kCommand and kLetGo: of the scene played then
+  std::uint64_t step = 0;    ///< kCommand and kLetGo: step of the scene played then
   std::uint32_t device_id = 0;
-  std::uint8_t bound = 0;  ///< of kReach a msg::ReachBound, of kLetGo a PassedBound
+  std::uint8_t bound = 0;  ///< kReach: a msg::ReachBound; kLetGo: a PassedBound
   bool is_supported = true;
   // Fields of a sample, as in its message.
   std::uint64_t epoch = 0;
@@ -41,7 +41,7 @@ struct InputRecord {
   std::int64_t time_nsec = 0;
   std::uint32_t axis_count = 0;
   double work_j = 0.0;
-  std::array<double, msg::MAX_AXES> value{};  ///< of a sample or a bound
+  std::array<double, msg::MAX_AXES> value{};  ///< values of a sample or a bound
   std::shared_ptr<const RequestSource> command;
 };
 

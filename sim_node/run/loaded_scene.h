@@ -32,7 +32,7 @@ struct LoadedScene {
 
   Simulation simulation;
   FrameStore frames;
-  StepRows step_rows;  ///< of the present turn
+  StepRows step_rows;  ///< rows of the present turn
   ChangeCounter changes;
   LimitWatch limits;
   bool is_certain;               ///< the step is certified, or nothing moves the scene from outside

@@ -31,7 +31,7 @@ struct Request {
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;
   std::unique_ptr<LoadedScene> scene;  ///< the new one; afterwards the one played before
-  std::vector<double> room;            ///< of kExchange: max_values_of_state() of its world
+  std::vector<double> room;            ///< kExchange: room for max_values_of_state() of its world
   std::vector<ForcedState> forced;
   std::shared_ptr<const RequestSource> source;  ///< the command that it comes from
 

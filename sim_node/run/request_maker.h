@@ -20,9 +20,9 @@ namespace cordis::sim {
 struct PreparedRequest {
   Request request;
   std::string done;                             ///< for a person, when it is done
-  std::shared_ptr<const scene::Scene> scene;    ///< that is played then; nullptr: the same
-  std::optional<scene::Parameters> parameters;  ///< of that scene; none: as they are
-  bool is_new_version = false;                  ///< of the description
+  std::shared_ptr<const scene::Scene> scene;    ///< scene to be played; nullptr: the one before
+  std::optional<scene::Parameters> parameters;  ///< parameters of that scene; none: as they are
+  bool is_new_version = false;                  ///< the description gets a new version
   std::string warnings;                         ///< for a person, may be empty
 };
 

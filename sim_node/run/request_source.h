@@ -13,7 +13,7 @@ namespace cordis::sim {
 struct SceneSource {
   std::string scene_file;                 ///< which of the files it is
   std::vector<config::SourceFile> files;  ///< all that were read for it
-  std::string integrator;                 ///< that is played
+  std::string integrator;                 ///< integrator in use
   double step_rate_hz = 0.0;              ///< likewise
 };
 
@@ -21,7 +21,7 @@ struct SceneSource {
 struct RequestSource {
   msg::ControlVerb verb = msg::VERB_PAUSE;
   std::string argument;  ///< as in ControlCommand
-  SceneSource scene;     ///< of VERB_LOAD
+  SceneSource scene;     ///< scene for VERB_LOAD
 };
 
 }  // namespace cordis::sim

@@ -18,10 +18,10 @@ namespace cordis::sim {
 
 /// What is to be different from the session; by default nothing.
 struct ModelChange {
-  std::string scene_file;        ///< of the disk, in place of the scene that the session began with
+  std::string scene_file;        ///< file on disk, in place of the first scene of the session
   std::string integrator;        ///< in place of its own
   std::vector<NewValue> values;  ///< parameters, set before the first step
-  double gesture_rate_hz = 0.0;  ///< of the take, which a scene of the disk must have; 0: unknown
+  double gesture_rate_hz = 0.0;  ///< rate of the take, which a scene on disk must have; 0: unknown
 
   bool is_none() const noexcept {
     return scene_file.empty() && integrator.empty() && values.empty();

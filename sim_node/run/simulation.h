@@ -18,7 +18,7 @@ namespace cordis::sim {
 
 /// What went wrong in the steps so far.
 struct StepTroubles {
-  std::uint64_t overflowed_steps = 0;  ///< with StepReport::overflowed_sets
+  std::uint64_t overflowed_steps = 0;  ///< steps with StepReport::overflowed_sets
   std::uint64_t forgotten_pairs = 0;   ///< sum of StepReport::forgotten_pairs
   std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs and refused_drives
   std::uint64_t refused_drives = 0;    ///< sum of StepReport::refused_drives

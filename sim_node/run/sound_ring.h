@@ -17,7 +17,7 @@ namespace cordis::sim {
 struct SoundBlock {
   static constexpr std::size_t kMaxValues = 2048;
 
-  std::uint64_t version = 0;  ///< of the description
+  std::uint64_t version = 0;  ///< version of the description
   std::uint64_t first_step = 0;
   std::int64_t time_nsec = 0;  ///< CLOCK_MONOTONIC when the last sample was taken
   double step_rate_hz = 0.0;

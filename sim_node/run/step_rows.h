@@ -19,7 +19,7 @@ class StepRows {
 
   std::size_t columns() const noexcept { return columns_; }
   std::size_t count() const noexcept { return count_; }
-  std::uint64_t first_step() const noexcept { return first_step_; }  ///< of the first row
+  std::uint64_t first_step() const noexcept { return first_step_; }  ///< step of the first row
   const double* row(std::size_t index) const noexcept { return values_.data() + index * columns_; }
 
   void clear() noexcept { count_ = 0; }

@@ -31,9 +31,9 @@ struct NameEntry {
   bool sound = true;  ///< false: its description has a problem, so that nothing is said about its
                       ///< indices
   config::Place place;
-  std::uint32_t copies = 0;         ///< of a repeated part: an index counts copies instead of MATs
+  std::uint32_t copies = 0;         ///< repeated part: an index counts copies instead of MATs
   bool is_of_liaison = false;       ///< links without a name, called after their liaison
-  std::vector<IndexRun> further{};  ///< of these: those that are not beside the first; in the count
+  std::vector<IndexRun> further{};  ///< runs of these that are not beside the first; in the count
 
   std::uint32_t index_count() const noexcept { return copies == 0 ? count : copies; }
   std::uint32_t per_index() const noexcept { return copies == 0 ? 1 : count / copies; }

@@ -17,16 +17,16 @@ namespace cordis::scene {
 struct Change {
   enum class Kind : std::uint8_t {
     kStateMachine,  ///< for World::replace_state_machine; it has the states it had
-    kLinks,         ///< of linear links, which a World takes only with a new Network
+    kLinks,         ///< linear links, which a World takes only with a new Network
     kMaxwellLinks   ///< likewise
   };
   Kind kind = Kind::kStateMachine;
   std::uint32_t first = 0;  ///< index of the state machine, or of the first link among those of its
                             ///< kind
   std::uint32_t count = 1;
-  engine::StateMachine state_machine;  ///< of kStateMachine
-  std::optional<double> stiffness;     ///< of links [N/m]; as it is when there is none
-  std::optional<double> viscosity;     ///< of links [N s/m]; as it is when there is none
+  engine::StateMachine state_machine;  ///< new machine for kStateMachine
+  std::optional<double> stiffness;     ///< stiffness of links [N/m]; as it is when there is none
+  std::optional<double> viscosity;     ///< viscosity of links [N s/m]; as it is when there is none
 };
 
 /// Makes a change in a description: a World of a Network made from it is as if the scene had been

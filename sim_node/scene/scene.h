@@ -39,7 +39,7 @@ struct LinkGroup {
   std::uint32_t first = 0;  ///< among those of its kind
   std::uint32_t count = 0;
   std::string liaison;           ///< they are made from; empty when there is none
-  std::string part;              ///< of it, when it is a parallel one
+  std::string part;              ///< part of the liaison, when it is a parallel one
   config::Place place;           ///< where they are described
   ParameterOverrides overrides;  ///< by the link
 };
@@ -76,18 +76,18 @@ struct Port {
   std::string name;
   std::string device;           ///< name of the device_node
   std::uint32_t device_id = 0;  ///< its name_hash
-  Role role = Role::kMass;      ///< the same in all ports of one device
+  Role role = Role::kMass;      ///< equal in all ports of one device
   std::uint32_t mat = 0;        ///< the MAT at the port: MatKind::kPort in role mass, kMass in role
                                 ///< liaison; of a body that mass which is nearest to its centre
   std::uint32_t tool = 0;       ///< the MAT that the scene touches: that at the port, or the tool
                                 ///< coupled to it
   std::vector<BodyMass> body;   ///< the masses of a body; empty: the MAT alone
   engine::Vec3 rest = engine::Vec3::Zero();  ///< position of the MAT when all axes are at 0 [m]
-  std::vector<std::uint32_t> axes;  ///< of the device, each below config::kMaxAxes, none twice in a
+  std::vector<std::uint32_t> axes;  ///< axes on the device, each below kMaxAxes, none twice in a
                                     ///< scene
   std::vector<engine::Vec3> directions;  ///< per axis, unit length, linearly independent
   PortNeeds needs;
-  config::Place place;  ///< of the port in the scene file
+  config::Place place;  ///< where the port stands in the scene file
 };
 
 /// Where a MAT of a 1-D scene is shown; its displacement is shown along y.
@@ -98,8 +98,8 @@ struct LayoutPoint {
 
 /// What a scene asks for: its `accuracy`.
 struct Accuracy {
-  double tolerance = 0.01;  ///< of pitch and decay; with over_s, of positions over the amplitude
-  double band_hz = 0.0;     ///< of vibrations up to this frequency
+  double tolerance = 0.01;  ///< for pitch and decay; with over_s, for positions over the amplitude
+  double band_hz = 0.0;     ///< highest frequency of vibrations that keep the tolerance
   double contact_energy = 0.1;  ///< part of its energy that a collision may gain or lose
   double over_s = 0.0;          ///< for so long from the start; 0: not asked
   config::Place place;
@@ -117,7 +117,7 @@ struct SettledStart {
   std::uint64_t steps = 0;
   double force = 0.0;     ///< the largest that is left [N]
   double way = 0.0;       ///< the largest of a MAT [m]
-  std::uint32_t mat = 0;  ///< that has gone it
+  std::uint32_t mat = 0;  ///< MAT that has gone it
 };
 
 /// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
@@ -129,15 +129,15 @@ struct ReductionOptions {
 
 /// Something that was taken out of a scene: exact to rounding.
 struct Reduction {
-  std::string name;       ///< of the reduction
-  std::size_t count = 0;  ///< of what was taken out
+  std::string name;       ///< name of the reduction
+  std::size_t count = 0;  ///< number of things that were taken out
   std::string what;       ///< for a person
 };
 
 /// A plane or a line, along the axes, that a scene of more dimensions is computed in.
 struct Subspace {
   int space = 3;                               ///< dimensions of the scene as its file says it
-  std::array<int, 3> axes{0, 1, 2};            ///< of that space: where those of the network lie
+  std::array<int, 3> axes{0, 1, 2};            ///< where those of the network lie in that space
   engine::Vec3 origin = engine::Vec3::Zero();  ///< place along the others [m]; 0 along these
 };
 
@@ -169,13 +169,13 @@ struct Scene {
   std::vector<LayoutPoint> layout;     ///< per MAT in a 1-D scene, else empty
   std::optional<Subspace> subspace;    ///< by a reduction; then there is no layout
   ReductionOptions reduce;
-  std::string start_state_file;  ///< of a state that a run has saved, as its file names it; may be
+  std::string start_state_file;  ///< a state that a run has saved, as the scene names it; may be
                                  ///< empty
   config::Place start_state_place;
   std::shared_ptr<const engine::Snapshot> start_state;  ///< what it holds, once it has been read
   std::optional<Settle> settle;
   std::optional<SettledStart> settled;  ///< once it has been
-  std::vector<Reduction> reductions;    ///< that were made
+  std::vector<Reduction> reductions;    ///< reductions that were made
   std::shared_ptr<const Scene> whole;   ///< before they were made; nullptr when none was
 
   int space() const noexcept { return network.dimension; }

@@ -14,7 +14,7 @@ namespace cordis::scene {
 
 /// MATs or links picked by a selection, in the order it lists them, none twice; never empty.
 struct Selection {
-  Named kind = Named::kMatter;  ///< of the name that was written first
+  Named kind = Named::kMatter;  ///< kind of the name that was written first
   std::vector<std::uint32_t> indices;
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(indices.size()); }

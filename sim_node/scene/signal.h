@@ -31,8 +31,8 @@ struct Signal : engine::Variable {
   std::string unit;  ///< m, m/s, N, J, s, kg m/s, kg m^2/s, or empty
   SignalRate rate = SignalRate::kGesture;
   bool is_sound = false;    ///< it is a sound; then it is taken after each step
-  double full_scale = 1.0;  ///< of a sound: the value, in its unit, that is the loudest
-  double near = 0.0;        ///< of pieces: within which two MATs are one piece [m]; 0: bound
+  double full_scale = 1.0;  ///< loudest value of a sound, in its unit
+  double near = 0.0;        ///< pieces: distance within which two MATs are one [m]; 0: bound
   std::vector<std::uint32_t> mats;         ///< whose pieces are counted; empty: of a set
   std::vector<std::uint32_t> state_links;  ///< whose pieces or bonds are counted; empty: of no
                                            ///< links

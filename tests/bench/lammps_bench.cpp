@@ -46,7 +46,7 @@ print "pairs ${pairs}"
 
 /// What LAMMPS has printed of a run.
 struct LammpsRun {
-  double seconds = 0.0;  ///< of the processor, for the timed steps
+  double seconds = 0.0;  ///< processor time of the timed steps
   long balls = 0;
   double pairs_per_ball = 0.0;
 };

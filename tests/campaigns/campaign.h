@@ -24,7 +24,7 @@ struct CampaignOptions {
 /// How one session ended: "ok", or one or two words for what went wrong.
 struct Outcome {
   std::string word;
-  std::string log;  ///< of all its processes, and when they were stopped; empty when all is well
+  std::string log;  ///< all its processes, and when they were stopped; empty when all is well
 };
 
 /// Session `index`, of the name "stalls-INDEX", from its start to its end.

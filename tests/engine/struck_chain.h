@@ -9,7 +9,7 @@
 
 namespace cordis::test {
 
-inline constexpr double kPeak = 0.01;  ///< of the stroke below [m]
+inline constexpr double kPeak = 0.01;  ///< height of the stroke below [m]
 
 /// A chain of masses of 1 g along x, 1 cm apart, on soft springs to fixed points beside it, between
 /// a fixed point and a port, which is the last MAT.

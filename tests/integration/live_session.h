@@ -17,7 +17,7 @@ namespace cordis::test {
 /// The executables that a session runs.
 struct Build {
   std::string folder;              ///< empty: of this build
-  std::uint32_t wire_version = 0;  ///< that they speak; 0: that of this build
+  std::uint32_t wire_version = 0;  ///< version that they speak; 0: that of this build
 };
 
 /// A folder with a launch file and what belongs to it, the nodes of it that the test has started,

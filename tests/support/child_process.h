@@ -63,7 +63,7 @@ class ChildProcess {
 /// A process that another one has started.
 struct ChildOf {
   pid_t id;
-  std::string name;  ///< of its program
+  std::string name;  ///< name of its program
 };
 std::vector<ChildOf> children_of(pid_t parent);
 

@@ -16,7 +16,7 @@ enum class ChronogramLayout : std::uint8_t { kRow, kGrid, kOverlay };
 
 struct ChronogramOptions {
   ChronogramLayout layout = ChronogramLayout::kRow;
-  double width = 1200.0;  ///< of the figure [pixels], > 0
+  double width = 1200.0;  ///< width of the figure [pixels], > 0
   Theme theme = Theme::kLight;
   std::optional<ViewPreset> view{};  ///< where the page opens, if not
   ColourBy colour_by = ColourBy::kBody;

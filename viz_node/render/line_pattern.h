@@ -16,7 +16,7 @@ struct PatternedLine {
   Place to;
   double width = 1.0;  ///< [pixels]
   LinePattern pattern = LinePattern::kSolid;
-  double scale = 1.0;  ///< of the lengths of dashes and dots
+  double scale = 1.0;  ///< factor on the lengths of dashes and dots
 };
 
 /// Draws what of a line may be seen in `area`.

@@ -23,14 +23,14 @@ enum class Theme : std::uint8_t { kDark, kLight };
 struct Palette {
   Colour background;
   Colour text;
-  Colour quiet;  ///< of what stands beside the scene
-  Colour frame;  ///< of lines around views and plots
+  Colour quiet;  ///< colour of what stands beside the scene
+  Colour frame;  ///< colour of lines around views and plots
   Colour grid_fine;
   Colour grid_coarse;
   Colour grid_axis;
   Colour fixed;
   Colour port;
-  Colour surface;  ///< of what is fixed and touched
+  Colour surface;  ///< colour of what is fixed and touched
   Colour surface_edge;
   Colour outline;  ///< around balls
   std::vector<Colour> bodies;

@@ -21,7 +21,7 @@ enum class ColourBy : std::uint8_t { kBody, kSpeed };
 
 /// Links of one liaison with states, or those without, where a scene has several such groups.
 struct LinkGroup {
-  std::string name;  ///< of the liaison; empty for links without states
+  std::string name;  ///< name of the liaison; empty for links without states
   LinePattern pattern = LinePattern::kSolid;
 };
 
@@ -29,8 +29,8 @@ struct LinkGroup {
 struct ViewOptions {
   Rectangle area;                  ///< nothing is drawn outside
   Rectangle inner;                 ///< what the camera was made for
-  double mark_scale = 1.0;         ///< of the smallest marks and of lines
-  double strength = 1.0;           ///< of the colours against the background, 0..1
+  double mark_scale = 1.0;         ///< factor on the smallest marks and on lines
+  double strength = 1.0;           ///< strength of the colours against the background, 0..1
   bool shows_surroundings = true;  ///< the grid and the surfaces
   std::string words{};             ///< attributes of the view, as for Canvas::begin_view()
 };

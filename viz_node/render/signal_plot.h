@@ -18,7 +18,7 @@ struct Curve {
 };
 
 struct PlotOptions {
-  double width = 900.0;  ///< of the figure [pixels], > 0
+  double width = 900.0;  ///< width of the figure [pixels], > 0
   Theme theme = Theme::kLight;
   std::string title{};
 };

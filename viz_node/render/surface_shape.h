@@ -12,7 +12,7 @@ namespace cordis::viz {
 /// A flat convex face. Its corners [m] go counterclockwise for a viewer on its outer side.
 struct SurfaceFace {
   std::vector<Point> corners;
-  Point normal;  ///< of length 1, outwards
+  Point normal;  ///< unit vector, outwards
 };
 
 /// A line of a surface [m].

@@ -15,7 +15,7 @@ struct OutlineStep {
   Kind kind = Kind::kMove;
   double x = 0.0;
   double y = 0.0;
-  double control_x = 0.0;  ///< of a quadratic curve
+  double control_x = 0.0;  ///< control point of a quadratic curve
   double control_y = 0.0;
 };
 
@@ -29,7 +29,7 @@ double text_width(std::string_view text, double size);
 struct Letter {
   std::uint32_t code = 0;
   std::int32_t advance = 0;
-  std::size_t first = 0;  ///< of its steps
+  std::size_t first = 0;  ///< index of its first step
   std::size_t count = 0;
 };
 

@@ -19,7 +19,7 @@ struct ServerConfig {
   int port = 0;                  ///< the first that is tried; 0 takes any free port
   std::filesystem::path folder;  ///< the built page
   std::string token;             ///< what a page must know to command, beyond loopback
-  PageRights rights;             ///< of pages that may command
+  PageRights rights;             ///< rights of pages that may command
 };
 
 /// What the server has done. Delays run from the hand to the view: from the newest device sample

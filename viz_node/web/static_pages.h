@@ -11,7 +11,7 @@ namespace cordis::viz {
 struct StaticPage {
   std::string type;  ///< MIME type
   std::string content;
-  std::string encoding;  ///< of the content: "br", "gzip", or empty
+  std::string encoding;  ///< encoding of the content: "br", "gzip", or empty
 };
 
 /// All files of one folder, held in memory. A request is looked up by its whole name, so that none

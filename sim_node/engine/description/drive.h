@@ -21,9 +21,9 @@ struct NetworkDescription;
 struct TimeFunction {
   std::array<Program, 3> formula;  ///< per axis, of Quantity::kAge alone: here the time since step
                                    ///< 0 [s]; empty: 0
-  std::vector<double> time;        ///< of a table [s], each larger than the one before; empty: none
-  std::vector<Vec3> value;         ///< of a table at these times
-  bool smooth = false;             ///< of a table
+  std::vector<double> time;  ///< table: times [s], each larger than the one before; empty: none
+  std::vector<Vec3> value;   ///< table: values at these times
+  bool smooth = false;       ///< table: it goes along cubics
 };
 
 /// The value at a time [s]; its components may be no finite numbers. The same bits everywhere. Real time:
@@ -42,7 +42,7 @@ struct Drive {
   std::uint32_t mat = 0;
   std::uint32_t function = 0;  ///< index in NetworkDescription::time_functions
   bool is_force = false;
-  Vec3 origin = Vec3::Zero();                                               ///< of a position [m]
+  Vec3 origin = Vec3::Zero();  ///< added to a position [m]
   std::array<double, 9> turn{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};  ///< rows of a matrix
 };
 

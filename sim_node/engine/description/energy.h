@@ -26,7 +26,7 @@ namespace cordis::engine {
 /// forces, with all energies in closed form and the works of viscosity at that moment: then the
 /// residual is what finite steps have done, and elastic_error and kinetic_excess are 0.
 struct Energy {
-  double kinetic = 0.0;  ///< of the half-step velocity (x(n) - x(n-1)) / dt before the present
+  double kinetic = 0.0;  ///< from the half-step velocity (x(n) - x(n-1)) / dt before the present
                          ///< position
   double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
   double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin

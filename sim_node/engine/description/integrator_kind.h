@@ -12,8 +12,8 @@ namespace cordis::engine {
 /// network; what each is for stands in docs/numerics.md.
 enum class IntegratorKind : std::uint8_t {
   kCordis = 0,       ///< the centred difference of the paper; dampers see x(n) - x(n-1)
-  kLeapfrog = 1,     ///< the same with dampers of second order
-  kSymplectic4 = 2,  ///< of fourth order, for scenes that conserve their energy
+  kLeapfrog = 1,     ///< centred difference with dampers of second order
+  kSymplectic4 = 2,  ///< fourth order, for scenes that conserve their energy
   kImplicit = 3,     ///< linearly implicit Euler, for very stiff cables
   kModal = 4         ///< linear networks in 1 dimension exactly, by their modes
 };

@@ -114,7 +114,7 @@ struct SetLiaison {
   std::vector<std::uint32_t> set_p;  ///< MATs, each once; or surfaces
   std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
   double range = 0.0;                ///< distance from which on there is no force [m], > 0
-  double rest_length = 0.0;          ///< of a pair [m]; < 0: the sum of the radii of its two MATs
+  double rest_length = 0.0;  ///< for each pair [m]; < 0: the sum of the radii of its two MATs
 };
 
 /// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by
@@ -137,10 +137,10 @@ struct NetworkDescription {
   std::vector<MaxwellLink> maxwell_links;
   std::vector<Bend> bends;
   std::vector<SetLiaison> sets;
-  std::vector<Surface> surfaces;  ///< of fixed MATs, at most one each
+  std::vector<Surface> surfaces;  ///< shapes of fixed MATs, at most one each
   std::vector<TimeFunction> time_functions;
   std::vector<Drive> drives;  ///< in the order of their MATs; of a position one each, forces add up
-  std::vector<Variable> variables;        ///< that conditions ask for: Operation::kVariable
+  std::vector<Variable> variables;        ///< scalars that conditions ask for: Operation::kVariable
   std::vector<VariableGroup> groups;      ///< what variables take together
   std::vector<ContactOfGroups> contacts;  ///< whose forces are added up in each step
 

@@ -67,7 +67,7 @@ struct Transition {
   Program when;
   std::uint32_t target = 0;  ///< a state of the state machine; may be the state itself
   RestRule rest = RestRule::kKeep;
-  Program rest_length;                         ///< of RestRule::kExpression, otherwise empty
+  Program rest_length;                         ///< new length, for kExpression alone
   Quantity triggered = Quantity::kElongation;  ///< the one an event shows: the first of the
                                                ///< condition
 };

@@ -28,7 +28,7 @@ struct Surface {
   Vec3 half_size =
       Vec3::Zero();  ///< [m], > 0, infinite without an end: half edges of a box along x, y, z;
                      ///< radius, half length of a cylinder
-  bool both_sides = false;  ///< of a plane: its distance has no sign, and its normal points to the
+  bool both_sides = false;  ///< a plane whose distance has no sign, and whose normal points to the
                             ///< MAT
 };
 

@@ -14,16 +14,16 @@ enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell };
 /// What a variable measures. The first block is of a MAT, the second of a link, the third of a set, the
 /// next two of the scene, the last of a group of MATs.
 enum class VariableKind : std::uint8_t {
-  kPosition,  ///< of a MAT along a direction [m]
-  kVelocity,  ///< of a MAT along a direction, over the last step [m/s]
-  kForce,     ///< of all links on a MAT along a direction, in the last step [N]
+  kPosition,  ///< position of a MAT along a direction [m]
+  kVelocity,  ///< velocity of a MAT along a direction, over the last step [m/s]
+  kForce,     ///< force of all links on a MAT along a direction, in the last step [N]
   kSpeed,     ///< length of the velocity of a MAT [m/s]
 
-  kDistance,        ///< of the ends of a link [m]; signed in 1-D
+  kDistance,        ///< distance between the ends of a link [m]; signed in 1-D
   kElongation,      ///< distance less rest length [m]
   kElongationRate,  ///< rate of the distance, over the last step [m/s]
-  kTension,  ///< of a linear link K elongation + Z elongation rate, of the present positions; of a
-  ///< link with states its tension in the last step; positive pulls the ends together [N]
+  kTension,         ///< linear link: K elongation + Z elongation rate, of the present positions;
+  ///< link with states: its tension in the last step; positive pulls the ends together [N]
   kState,       ///< number of the state of a link, in the order of the file
   kRestLength,  ///< present rest length of a link with states [m]
   kAge,         ///< time since a link with states entered its state [s]
@@ -33,7 +33,7 @@ enum class VariableKind : std::uint8_t {
             ///< states that are not idle
 
   kTime,     ///< since step 0 [s]
-  kChanges,  ///< of the states of all links, since step 0
+  kChanges,  ///< changes of state in all links, since step 0
   kAwake,    ///< part of the masses that are not left out for being at rest, 0 to 1
 
   kEnergy,            ///< kinetic + elastic + gravity [J]
@@ -44,9 +44,9 @@ enum class VariableKind : std::uint8_t {
   kPortWork,          ///< brought in through the ports since step 0 [J]
   kSwitchingEnergy,   ///< brought in by changes of state since step 0 [J]
 
-  kCenterOfMass,  ///< of the masses of a group along a direction [m]
-  kMomentum,      ///< of the masses of a group along a direction [kg m/s]
-  kAngularMomentum,  ///< of the masses of a group about an axis through their centre of mass, or through
+  kCenterOfMass,     ///< centre of mass of a group along a direction [m]
+  kMomentum,         ///< momentum of a group along a direction [kg m/s]
+  kAngularMomentum,  ///< angular momentum of a group about an axis through its centre of mass, or
                      ///< a point [kg m^2/s]
   kContactForce  ///< on a group by another one along a direction: of their liaisons of sets, in the last
                  ///< step [N]
@@ -79,7 +79,7 @@ constexpr bool is_of_body(VariableKind kind) noexcept {
 /// MATs, or links of one kind, that a variable takes together: sums go through them in their order.
 struct VariableGroup {
   bool is_of_links = false;
-  LinkKind kind = LinkKind::kLinear;   ///< of the links
+  LinkKind kind = LinkKind::kLinear;   ///< kind of the links
   std::vector<std::uint32_t> members;  ///< each once
 };
 
@@ -92,14 +92,14 @@ struct ContactOfGroups {
 /// One scalar of a network in motion. The conditions of links may ask for it.
 struct Variable {
   VariableKind quantity = VariableKind::kEnergy;
-  std::uint32_t index = 0;  ///< of the MAT, of the link in its kind, of the set, of the group, or
-                            ///< of the contact of groups
-  LinkKind kind = LinkKind::kLinear;  ///< of the link
-  Vec3 direction = Vec3::Zero();      ///< of a MAT's quantity, unit length
+  std::uint32_t index = 0;  ///< index of the MAT, the link in its kind, the set, the group, or
+                            ///< the contact of groups
+  LinkKind kind = LinkKind::kLinear;  ///< kind of the link
+  Vec3 direction = Vec3::Zero();      ///< direction of a MAT's quantity, unit length
   double offset = 0.0;                ///< subtracted from a position [m]: a port's rest
   Take take = Take::kOne;             ///< another one: of the members of a group
   bool is_about_point = false;        ///< an angular momentum: about a point of the scene
-  Vec3 point = Vec3::Zero();          ///< that point [m]
+  Vec3 point = Vec3::Zero();          ///< point of the scene [m]
 
   friend bool operator==(const Variable& a, const Variable& b) noexcept {
     return a.quantity == b.quantity && a.index == b.index && a.kind == b.kind &&

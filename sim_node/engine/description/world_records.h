@@ -33,7 +33,7 @@ struct PartnerCount {
 struct BoundPair {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  std::uint32_t state = 0;   ///< of the state machine of the set
+  std::uint32_t state = 0;   ///< index of a state in the state machine of the set
   double rest_length = 0.0;  ///< [m]
 };
 

@@ -24,7 +24,7 @@ enum class Quantity : std::uint8_t {
   kImpulse = 8,      ///< sum of tension * dt since the state was entered [N s]
   kAge = 9,          ///< time since the state was entered [s]; 0 in that step, and at step 0
   kRestLength = 10,  ///< present rest length [m]
-  kMassA = 11,       ///< of end a [kg]; 0 for a fixed point or a port mass
+  kMassA = 11,       ///< mass of end a [kg]; 0 for a fixed point or a port mass
   kMassB = 12,
   kSlid =
       13,     ///< stretch of the spring of its friction as the last step ended [m], >= 0; 0 without
@@ -39,9 +39,9 @@ static_assert(static_cast<std::size_t>(Quantity::kNone) == kQuantityCount);
 enum class Operation : std::uint8_t {
   kConstant,  ///< pushes Instruction::constant
   kQuantity,  ///< pushes Instruction::quantity
-  kNegate,    ///< of one value: also kAbs, kSqrt, kNot, kRising, kFalling
+  kNegate,    ///< takes one value, as do kAbs, kSqrt, kNot, kRising, kFalling
   kAbs,
-  kMin,  ///< of two values, the lower on the stack on the left
+  kMin,  ///< takes two values, the lower on the stack on the left
   kMax,
   kAdd,
   kSubtract,
@@ -60,16 +60,16 @@ enum class Operation : std::uint8_t {
   kRising,  ///< 1 when the value is greater than one step before, else 0; 0 in the first step in
             ///< which a state's exits are tested; remembers the value in Instruction::slot
   kFalling,
-  kSelect,  ///< of three values, the lowest on the stack a truth: the middle one when it is so,
+  kSelect,  ///< takes three values, the lowest on the stack a truth: the middle one when it is so,
             ///< else the upper one
-  kSign,    ///< of one value: -1 or 1; zero and NaN stay what they are
-  kExp,     ///< of one value, as the rest but kPower, see elementary_functions.h
+  kSign,    ///< takes one value: -1 or 1; zero and NaN stay what they are
+  kExp,     ///< takes one value, as the rest but kPower, see elementary_functions.h
   kLog,
   kSin,
   kCos,
   kTanh,
-  kPower,       ///< of two values, the lower on the stack to the power of the upper
-  kWholePower,  ///< to the power of Instruction::constant, a whole number of at most
+  kPower,       ///< takes two values, the lower on the stack to the power of the upper
+  kWholePower,  ///< raises to the power of Instruction::constant, a whole number of at most
                 ///< kMaxWholePower
   kVariable     ///< pushes the value that a Variable of the network had as the last step ended;
                 ///< Instruction::slot is its number
@@ -80,9 +80,9 @@ static_assert(static_cast<std::size_t>(Operation::kVariable) + 1 == kOperationCo
 struct Instruction {
   Operation operation = Operation::kConstant;
   Quantity quantity = Quantity::kDistance;
-  double constant = 0.0;   ///< of kConstant and kWholePower
-  std::uint32_t slot = 0;  ///< of kRising and kFalling: where the link keeps the last value; not
-                           ///< shared by two instructions of one state's exits. Of kVariable its
+  double constant = 0.0;   ///< value for kConstant and kWholePower
+  std::uint32_t slot = 0;  ///< kRising and kFalling: where the link keeps the last value; not
+                           ///< shared by two instructions of one state's exits. kVariable: its
                            ///< number
 };
 

@@ -26,8 +26,8 @@ struct ProgramTerm {
 
 /// What a program reads, for 8 rows; every array holds 8 values and is 64-byte aligned.
 struct ProgramRows {
-  const double* const* quantity;  ///< of every Quantity; what the program does not read may be null
-  double* memory;                 ///< of slot s: memory[8 * s], 8 values, kNoValue at first
+  const double* const* quantity;  ///< by Quantity; what the program does not read may be null
+  double* memory;                 ///< slot s has memory[8 * s], 8 values, kNoValue at first
 };
 
 }  // namespace cordis::engine

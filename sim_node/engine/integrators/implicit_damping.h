@@ -62,7 +62,7 @@ class ImplicitDamping {
   struct Work {
     double dissipated = 0.0;  ///< by the dampers and the medium [J]
     double port_work = 0.0;   ///< brought in by ports through the dampers [J]
-    double kinetic = 0.0;     ///< of the moment x(n): mean of the half steps around it [J]
+    double kinetic = 0.0;     ///< energy at the moment x(n): mean of the half steps around it [J]
     std::uint32_t non_finite_mats = 0;
   };
   /// Ends the period: moves the masses to x(n+1).

@@ -18,7 +18,7 @@ bool is_known_to_laws(Quantity quantity) noexcept;
 
 /// The tension is 0 where the value is not finite.
 struct Expression {
-  Program program;  ///< of distance, elongation, speed and masses alone, without edges
+  Program program;  ///< asks for distance, elongation, speed and masses alone, without edges
 
   static constexpr const char* kName = nullptr;  ///< a scene writes the expression itself
   static constexpr LawArgument kArgument = LawArgument::kAny;

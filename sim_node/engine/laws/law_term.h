@@ -21,7 +21,7 @@ struct LawPoint {
   double distance = 0.0;    ///< [m], signed in 1 dimension
   double elongation = 0.0;  ///< distance - rest length [m]
   double speed = 0.0;       ///< elongation rate [m/s]; 0 in the step in which a state is entered
-  double mass_a = 0.0;      ///< of the ends [kg]; 0 for a fixed point or a port mass
+  double mass_a = 0.0;      ///< mass of end a [kg]; 0 for a fixed point or a port mass
   double mass_b = 0.0;
 };
 
@@ -46,12 +46,12 @@ struct LawTerm {
 /// How far a law is followed in search of its largest slope.
 struct LawRange {
   double argument = 0.0;     ///< elongation [m] or speed [m/s], either way
-  double rest_length = 0.0;  ///< of an elasticity; the distance of a dissipation [m]
-  double energy = 0.0;       ///< with which two MATs approach each other [J]
-  double mass = 0.0;         ///< of each end [kg]
+  double rest_length = 0.0;  ///< rest length of an elasticity; the distance of a dissipation [m]
+  double energy = 0.0;       ///< energy with which two MATs approach each other [J]
+  double mass = 0.0;         ///< mass of each end [kg]
   bool viscous = false;      ///< it is a dissipation
   bool turns = false;        ///< a tension also has a slope across the link: tension / distance
-  int samples = 400;         ///< of a law that is known by its values alone
+  int samples = 400;         ///< samples of a law that is known by its values alone
 };
 
 /// Slopes below 0 (a compressed link gives way sideways) never count.

@@ -24,7 +24,7 @@ class EventLog {
   void add(const LinkEvent& event) noexcept;
 
   std::span<const LinkEvent> events() const noexcept { return {events_.data(), count_}; }
-  std::uint32_t lost() const noexcept { return lost_; }  ///< that found no room in this step
+  std::uint32_t lost() const noexcept { return lost_; }  ///< changes without room in this step
   /// How often a state machine went from a state to another since step 0.
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,
                              std::uint32_t to) const noexcept;

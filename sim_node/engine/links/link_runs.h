@@ -33,7 +33,7 @@ struct LinkArrangement {
   static constexpr std::size_t kShortestRun = 8;
 
   std::vector<std::uint32_t> link_of_row;  ///< index of the link, or kEmpty
-  std::vector<std::uint8_t> used_rows;     ///< of each batch: bit i for its row i
+  std::vector<std::uint8_t> used_rows;     ///< used rows of each batch: bit i for its row i
   std::vector<LinkRun> runs;
 };
 

@@ -13,7 +13,7 @@ namespace cordis::engine {
 
 /// The pairs of a set as its members and its neighbour list have them now.
 struct PairsOfSet {
-  const std::vector<std::uint32_t>& column;  ///< of the MAT of each member
+  const std::vector<std::uint32_t>& column;  ///< column of each member's MAT
   const PairStateMachines& state_machines;
   NeighbourRows rows;  ///< all of them
 };

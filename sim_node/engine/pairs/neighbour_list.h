@@ -62,7 +62,7 @@ class NeighbourList {
   bool covers(const double* position, const std::vector<std::uint32_t>& column) const noexcept;
 
   bool is_whole() const noexcept { return whole_; }    ///< one part holds all rows
-  double skin() const noexcept { return used_.skin; }  ///< of the list in use [m]
+  double skin() const noexcept { return used_.skin; }  ///< skin of the list in use [m]
   /// Lists that have been in use.
   std::size_t build_count() const noexcept { return build_count_; }
   /// How many pairs it found when it was last made, whether or not there was room for them.

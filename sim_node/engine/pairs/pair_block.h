@@ -41,7 +41,7 @@ class PairBlock {
 
   double* rest_length() noexcept { return array(kRestLength); }        ///< [m]
   double* factor() noexcept { return array(kFactor); }                 ///< tension / distance [N/m]
-  double* viscous_factor() noexcept { return array(kViscousFactor); }  ///< of what is not stored
+  double* viscous_factor() noexcept { return array(kViscousFactor); }  ///< for what is not stored
 
  private:
   static constexpr std::size_t kEnough = 1024;

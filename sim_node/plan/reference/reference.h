@@ -41,7 +41,7 @@ struct Reference {
                              ///< amplitude
   bool by_reference = true;  ///< false: by the scheme itself at a very high rate
   std::string made_by;       ///< for a person
-  std::uint64_t evaluations = 0;  ///< of all forces
+  std::uint64_t evaluations = 0;  ///< evaluations of all forces
 
   const double* row(int sample) const noexcept {
     return position.data() + static_cast<std::size_t>(sample) * 3 * masses.size();
@@ -60,7 +60,7 @@ struct NothingMoves : std::runtime_error {
 
 struct ReferenceOptions {
   Sampling sampling;
-  double tolerance = 1e-10;  ///< of the better of the two reference integrators
+  double tolerance = 1e-10;  ///< tolerance of the better of the two reference integrators
   double longest_s = 300.0;  ///< wall time for one of the two; then the comparison ends there
   double finest_hz = 0.0;    ///< the highest rate that will be compared with it
   std::function<void(double)> progress;  ///< receives the part that is done, 0 to 1; may be empty

@@ -43,11 +43,11 @@ class TrajectoryRun {
 struct TrialResult {
   std::string integrator;
   double rate_hz = 0.0;
-  double evaluations_per_s = 0.0;   ///< of all forces, per simulated second
-  double nsec_per_s = 0.0;          ///< of processor time, per simulated second
+  double evaluations_per_s = 0.0;   ///< evaluations of all forces, per simulated second
+  double nsec_per_s = 0.0;          ///< processor time, per simulated second
   double instructions_per_s = 0.0;  ///< per simulated second; 0 where they cannot be counted
   double error = 0.0;         ///< root of the mean square of position errors, over the amplitude
-  double energy_error = 0.0;  ///< of the mean kinetic energy after the reference has diverged,
+  double energy_error = 0.0;  ///< in the mean kinetic energy after the reference has diverged,
                               ///< relative
   bool blown_up = false;
   double blown_up_at = 0.0;  ///< [s]

@@ -41,11 +41,11 @@ struct ContactBound {
   std::vector<std::uint32_t> others;
   std::vector<double> neighbours;  ///< per member
   std::vector<double> possible;    ///< per member: no pose has more
-  double stiffness = 0.0;          ///< of one pair [N/m]
-  double viscosity = 0.0;          ///< of one pair [N s/m]
+  double stiffness = 0.0;          ///< stiffness of one pair [N/m]
+  double viscosity = 0.0;          ///< viscosity of one pair [N s/m]
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
   bool bounded = true;             ///< as Edge::bounded
-  double variation = 0.0;          ///< of one pair, as Edge::variation [N/m]
+  double variation = 0.0;          ///< variation of one pair, as Edge::variation [N/m]
   std::uint32_t at_start = 0;      ///< the most partners of any mass of the set at the start
   bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run
 };

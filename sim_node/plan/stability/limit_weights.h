@@ -18,9 +18,9 @@ namespace cordis::plan {
 /// Factors on stiffnesses and viscosities with which every integrator is stable just where
 /// `cordis` is: dt^2 K + 2 dt Z below 4 M, in all directions.
 struct LimitWeights {
-  double link_stiffness = 1.0;  ///< of linear links
-  double link_viscosity = 1.0;  ///< of linear links and the medium
-  double stiffness = 1.0;       ///< of all others
+  double link_stiffness = 1.0;  ///< factor for linear links
+  double link_viscosity = 1.0;  ///< factor for linear links and the medium
+  double stiffness = 1.0;       ///< factor for all others
   double viscosity = 1.0;
   std::vector<std::uint8_t> solved;  ///< by state link: solved for its speed; empty: none
 

@@ -12,21 +12,21 @@ namespace cordis::plan {
 /// The loop of one device. The force or position that answers sample n, taken at n T, takes effect
 /// at (n + delay) T, and the next one a period later. A part of a period counts as it is.
 struct PortLoop {
-  double period = 1e-3;  ///< of the device, > 0 [s]
+  double period = 1e-3;  ///< period of the device, > 0 [s]
   double delay = 1.0;    ///< [periods], >= 0
-  int sub_steps = 1;     ///< of the scene in a period, over which a force of the hand is held
+  int sub_steps = 1;     ///< steps of the scene in a period, over which a force of the hand is held
 };
 
 /// One axis of a device of role mass.
 struct PortDevice {
-  double mass = 0.05;      ///< that moves, > 0 [kg]
-  double viscosity = 1.0;  ///< that it has for certain, > 0 [N s/m]
+  double mass = 0.05;      ///< moving mass, > 0 [kg]
+  double viscosity = 1.0;  ///< certain viscosity, > 0 [N s/m]
 };
 
 /// What hangs on a port: the sums of the largest slopes of the liaisons at its MAT.
 struct PortLoad {
   double stiffness = 0.0;  ///< [N/m]
-  double viscosity = 0.0;  ///< of the liaisons and, for a mass, of the medium [N s/m]
+  double viscosity = 0.0;  ///< viscosity of the liaisons and, for a mass, of the medium [N s/m]
 };
 
 /// Which of the loads that a MAT may have.

@@ -11,13 +11,13 @@ namespace cordis::plan {
 
 /// How far a scene is taken to go where a law has no largest slope of its own.
 struct Reach {
-  double elongation = 0.0;  ///< of a link, either way [m]
+  double elongation = 0.0;  ///< elongation of a link, either way [m]
   double speed = 0.0;       ///< elongation rate of a link [m/s]
-  double energy = 0.0;      ///< with which two MATs approach each other [J]
+  double energy = 0.0;      ///< energy with which two MATs approach each other [J]
   /// Kinetic and stored at the start, by falling and by `pushed` [J].
   double brought = 0.0;
   double pushed = 0.0;   ///< by driven forces through the scene [J]
-  Interval mass_a = {};  ///< of the ends of the liaison [kg]; 0 for what is no mass
+  Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
   bool held = false;  ///< a port holds an end, so that no energy limits the elongation
 };

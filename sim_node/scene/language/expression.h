@@ -16,10 +16,10 @@ struct ExpressionWord {
   enum class Kind { kNumber, kName, kOfAnother, kOperation };
   Kind kind = Kind::kNumber;
   double number = 0.0;
-  std::string name;  ///< of kOfAnother: bolt.force_n, string[3].position_y_m
+  std::string name;  ///< name for kOfAnother: bolt.force_n, string[3].position_y_m
   engine::Operation operation = engine::Operation::kAdd;
   std::size_t offset = 0;  ///< byte in the text
-  std::string state{};     ///< of kOfAnother: the state whose number it is, instead of the quantity
+  std::string state{};     ///< kOfAnother: the state whose number it is, instead of the quantity
 };
 
 /// An expression in postfix order. What its names stand for is not known here.

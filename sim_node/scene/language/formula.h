@@ -28,7 +28,7 @@ class ParameterValues {
 
   /// Nothing when there is none of that name.
   std::optional<double> find(const std::string& name) const;
-  std::vector<std::string> names() const;  ///< with those outside
+  std::vector<std::string> names() const;  ///< all names, those outside included
   /// Names of the section that find() was never asked for.
   std::vector<std::string> unused() const;
 
@@ -70,7 +70,7 @@ struct VariableReference {
 struct AskedOutside {
   const std::set<std::string>& signals;  ///< names of those of the scene
   std::vector<VariableReference>&
-      references;  ///< of the liaison; Instruction::slot is a place here
+      references;  ///< references of the liaison; Instruction::slot is a place here
 };
 
 /// A condition or a formula over the quantities of a link, for the engine.

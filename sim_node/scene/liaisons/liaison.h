@@ -15,10 +15,10 @@ namespace cordis::scene {
 
 /// A liaison of a scene.
 struct Liaison {
-  config::Value definition;  ///< with that of the liaison it is like
+  config::Value definition;  ///< holds that of the liaison it is like, too
   LinkLaw law;               ///< what it is when a link gives no parameter
   config::Place place;
-  bool complete = false;  ///< whether the definition is
+  bool complete = false;  ///< the definition is complete
   bool sound = true;      ///< false: it has a problem, which has been reported
 };
 

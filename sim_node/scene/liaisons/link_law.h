@@ -43,10 +43,10 @@ struct LinkLaw {
   std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
-  std::shared_ptr<const engine::StateMachine> state_machine;  ///< of kState
-  std::vector<VariableReference> references;  ///< of its conditions, until the scene is whole
-  std::uint32_t state_machine_index = 0;      ///< of kState, in the network, once a link uses it
-  Reach reach;                                ///< of kState
+  std::shared_ptr<const engine::StateMachine> state_machine;  ///< state machine for kState
+  std::vector<VariableReference> references;  ///< from its conditions, until the scene is whole
+  std::uint32_t state_machine_index = 0;      ///< kState: index in the network, once a link uses it
+  Reach reach;                                ///< reach for kState
   std::string part;                           ///< its name in a parallel liaison, else empty
   std::string liaison;                        ///< the name of that it was made from, or empty
   ParameterOverrides overrides;               ///< what the link gave to it
@@ -71,7 +71,7 @@ class StateMachinePool {
   struct Origin {
     std::string liaison;
     ParameterOverrides overrides;
-    std::string part;     ///< of a parallel liaison
+    std::string part;     ///< part of a parallel liaison
     std::string owner;    ///< the named links it belongs to alone, or empty
     std::string scope{};  ///< w.rim. of the part whose names its conditions ask for, or empty
     bool operator<(const Origin& other) const;

@@ -16,8 +16,8 @@ struct StateMachinePlaces {
     bool is_final = false;  ///< the person knows that nothing leads out of it
   };
   std::vector<State> states;
-  std::vector<config::Place> exits;  ///< of their conditions
-  std::vector<config::Place> rests;  ///< of what they do with the rest length
+  std::vector<config::Place> exits;  ///< where their conditions stand
+  std::vector<config::Place> rests;  ///< where the rules for their rest lengths stand
 };
 
 /// Reads the keys `friction`, `states` and `start`, or those of a single state, which then stand in the liaison

@@ -9,9 +9,9 @@ namespace cordis::scene {
 /// What the MATs of a crystal are, how far from each other, and how joined.
 struct CrystalKeys {
   PointSpec spec;
-  double spacing = 1.0;          ///< of nearest neighbours [m]
-  std::optional<LinkLaw> law;    ///< of nearest neighbours; nothing when they are not joined
-  std::optional<LinkLaw> shear;  ///< of second neighbours
+  double spacing = 1.0;          ///< distance of nearest neighbours [m]
+  std::optional<LinkLaw> law;    ///< joins nearest neighbours; nothing when they are not joined
+  std::optional<LinkLaw> shear;  ///< joins second neighbours
 };
 
 /// `mass_kg` or `ball`, `spacing_m` (of balls: their diameter), and the laws.

@@ -13,12 +13,12 @@ struct GeneratedMatter {
   std::vector<engine::Mat> mats;
   std::vector<LayoutPoint> layout;  ///< per MAT in 1-D, else empty
   LinkLists links;
-  std::vector<std::vector<std::uint32_t>> lines;  ///< of neighbours, along which it may bend
-  std::optional<LinkLaw> law;                     ///< of all its links; none when there are several
+  std::vector<std::vector<std::uint32_t>> lines;  ///< rows of neighbours, along which it may bend
+  std::optional<LinkLaw> law;                     ///< law of its links; none if they differ
   std::vector<double> radius_m;                   ///< per MAT; 0 for a punctual mass
   std::vector<double> drawn_radius_m;             ///< per MAT
-  std::optional<config::Colour> colour;           ///< of all of it
-  std::vector<NamedRange> names;                  ///< of MATs within it, from 0
+  std::optional<config::Colour> colour;           ///< colour of all of it
+  std::vector<NamedRange> names;                  ///< names of MATs within it, from 0
   std::vector<engine::Surface> surfaces;          ///< their MATs counted from 0
   std::vector<engine::TimeFunction> time_functions;
   std::vector<engine::Drive> drives;  ///< their MATs and functions counted from 0

@@ -9,7 +9,7 @@ namespace cordis::scene {
 
 /// The corners of an icosahedron whose triangles have been divided into four, again and again.
 struct Icosphere {
-  std::vector<engine::Vec3> points;  ///< of unit length; 10 * 4^subdivisions + 2
+  std::vector<engine::Vec3> points;  ///< unit vectors; 10 * 4^subdivisions + 2
   std::vector<Edge> edges;           ///< 30 * 4^subdivisions
   std::vector<Edge> across;          ///< per edge, the far corners of its two triangles
 };

@@ -8,7 +8,7 @@
 
 namespace cordis::scene {
 
-inline constexpr long kMaxMats = 1'000'000 / kLimitDivisor;  ///< of a scene
+inline constexpr long kMaxMats = 1'000'000 / kLimitDivisor;  ///< most MATs of a scene
 
 /// Reads one entry of `matter:`, its kind and the keys of the kind. Whatever is wrong is a problem;
 /// then the result is not to be used.

@@ -13,7 +13,7 @@ struct PackedBalls {
   /// Nothing when they still overlap at the end: the balls do not fit, or only in order. Of more than
   /// 1000 balls that is seen as soon as what they overlap by hardly shrinks any more.
   std::optional<std::vector<engine::Vec3>> centers;
-  int rounds = 0;  ///< of pushing apart
+  int rounds = 0;  ///< rounds of pushing apart
 };
 
 /// Centres of `count` balls of `radius` [m] that lie wholly in the region and do not overlap.

@@ -9,11 +9,11 @@ namespace cordis::scene {
 struct Region {
   int space = 3;
   bool round = false;
-  engine::Vec3 lowest = engine::Vec3::Zero();   ///< of the box [m]; of the box around a round one
+  engine::Vec3 lowest = engine::Vec3::Zero();   ///< lowest corner; round: of the box around it [m]
   engine::Vec3 highest = engine::Vec3::Zero();  ///< [m]
 
   engine::Vec3 center() const { return 0.5 * (lowest + highest); }
-  double radius() const { return 0.5 * (highest.x() - lowest.x()); }  ///< of a round one [m]
+  double radius() const { return 0.5 * (highest.x() - lowest.x()); }  ///< if it is round [m]
   double measure() const;  ///< area [m^2] in 2-D, volume [m^3] in 3-D
 
   /// True if a point lies in the region or nearer to it than `tolerance` [m].

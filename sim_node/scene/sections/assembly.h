@@ -20,19 +20,19 @@
 
 namespace cordis::scene {
 
-inline constexpr std::size_t kMaxLinks = 8'000'000 / kLimitDivisor;  ///< of a scene
-inline constexpr std::size_t kMaxDevices = 64;                       ///< of a scene
+inline constexpr std::size_t kMaxLinks = 8'000'000 / kLimitDivisor;  ///< most links of a scene
+inline constexpr std::size_t kMaxDevices = 64;                       ///< most devices of a scene
 inline constexpr std::size_t kMaxSets = 1'000;  ///< liaisons of sets of a scene
-inline constexpr std::size_t kMaxSetMembers = 2'000'000 / kLimitDivisor;  ///< of all sets together
+inline constexpr std::size_t kMaxSetMembers = 2'000'000 / kLimitDivisor;  ///< in all sets together
 inline constexpr std::size_t kMaxSetSurfaces = 10'000 / kLimitDivisor;    ///< likewise
 inline constexpr std::size_t kMaxSetPairs =
     8'000'000 / kLimitDivisor;  ///< in range at the start, of all sets
 inline constexpr std::size_t kMaxSetLooks = 64 * kMaxSetPairs;  ///< StartPairCount::looked_at
 inline constexpr std::size_t kMaxPartUses =
-    100'000 / kLimitDivisor;                       ///< of a scene, each copy for itself
-inline constexpr std::size_t kMaxPartLevels = 64;  ///< of parts within each other
+    100'000 / kLimitDivisor;                       ///< most uses in a scene, each copy for itself
+inline constexpr std::size_t kMaxPartLevels = 64;  ///< deepest level of parts within each other
 inline constexpr std::size_t kMaxPartValues =
-    10'000'000 / kLimitDivisor;  ///< of the file, in all copies of parts
+    10'000'000 / kLimitDivisor;  ///< most values of the file, in all copies of parts
 
 /// How many links of each kind there are, by LinkKind.
 using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;
@@ -95,7 +95,7 @@ struct Assembly {
     return static_cast<std::uint32_t>(scene.network.mats.size());
   }
   LinkCounts link_counts() const noexcept;
-  double radius_of(std::uint32_t mat) const noexcept;  ///< of a ball [m], else 0
+  double radius_of(std::uint32_t mat) const noexcept;  ///< radius of a ball [m], else 0
   /// How many of some MATs are surfaces.
   std::size_t count_surfaces(const std::vector<std::uint32_t>& mats) const;
 
@@ -104,13 +104,13 @@ struct Assembly {
   std::shared_ptr<Liaisons> liaisons;
   Names names;
   std::vector<MatterLine> lines;  ///< along which matter may bend, in the order of their matter
-  std::map<std::string, std::uint32_t> named_sets;  ///< of the network, by full name
-  std::map<std::string, std::vector<std::uint32_t>> sets_of_liaisons;  ///< those without a name, by
-                                                                       ///< that of their liaison
+  std::map<std::string, std::uint32_t> named_sets;  ///< sets of the network, by full name
+  std::map<std::string, std::vector<std::uint32_t>> sets_of_liaisons;  ///< unnamed sets, by
+                                                                       ///< their liaison
   Parts parts;
-  Placement placement;                   ///< of the part that is being added
+  Placement placement;                   ///< placement of the part that is being added
   std::vector<const Part*> open_parts;   ///< from the outermost to it
-  std::optional<config::Colour> colour;  ///< of what has none itself in the part that is being
+  std::optional<config::Colour> colour;  ///< for what has none itself in the part that is being
                                          ///< added
   std::set<const Part*> faulty_parts;    ///< whose faults have been reported
   std::size_t part_uses = 0;

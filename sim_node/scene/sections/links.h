@@ -9,8 +9,8 @@ namespace cordis::scene {
 /// An entry of `links:` while it is read.
 struct LinkEntry {
   config::MappingReader& reader;
-  std::string name;       ///< of its links: their own, or that of their liaison
-  bool has_name = false;  ///< of their own
+  std::string name;       ///< name of its links: their own, or that of their liaison
+  bool has_name = false;  ///< they have a name of their own
   std::optional<LinkLaw> law;
   std::size_t errors_before = 0;
 };

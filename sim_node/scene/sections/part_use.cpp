@@ -26,10 +26,10 @@ struct PartUse {
   Placement placement;
   Placement step;                        ///< from one copy to the next
   std::uint32_t copies = 0;              ///< 0: it is not repeated
-  std::optional<config::Colour> colour;  ///< of its matter that has none itself
+  std::optional<config::Colour> colour;  ///< colour of its matter that has none itself
   std::optional<DriveSpec> drive;
   config::Place drive_place;
-  StartMotion motion;  ///< of all of a copy, along the axes of what the part is used in
+  StartMotion motion;  ///< motion of all of a copy, along the axes of what the part is used in
   config::Place motion_place;
 };
 
