@@ -1,4 +1,4 @@
-// tests/style/page_numbers_test.mjs -- numbers that C++ and the page's TypeScript both write are equal.
+// tests/style/page_numbers_test.mjs -- numbers that C++ and the page both write are equal.
 //
 // usage: node page_numbers_test.mjs SOURCE_FOLDER
 import assert from 'node:assert/strict';
