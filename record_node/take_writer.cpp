@@ -38,15 +38,6 @@ bool is_of_loop(const dds::RawTopic& topic) {
   return topic.name == msg::TOPIC_POSITIONS || topic.name == msg::TOPIC_FORCES;
 }
 
-/// When a sample came; one that the force loop had another thread send: when it was written.
-std::uint64_t log_nsec(const RecordedWriter& writer, const QueuedSample& sample) {
-  constexpr std::uint64_t kLongestDetour = 25'000'000;  // [ns]
-  const bool is_sent_later = writer.is_of_loop_here &&
-                             sample.log_time_nsec > sample.publish_time_nsec &&
-                             sample.log_time_nsec - sample.publish_time_nsec <= kLongestDetour;
-  return is_sent_later ? sample.publish_time_nsec : sample.log_time_nsec;
-}
-
 }  // namespace
 
 TakeWriter::TakeWriter(const RecorderConfig& config, PlanReport& plan, SampleQueue& queue,
@@ -127,9 +118,11 @@ bool TakeWriter::write(const QueuedSample& sample) {
   const std::uint16_t channel = channel_of(writer);
   if (channel == 0) return false;
   const auto data = std::as_bytes(batch_.data(sample));
+  const std::uint64_t log_nsec =
+      writer.log_time.next(sample.log_time_nsec, sample.publish_time_nsec, writer.is_of_loop_here);
   const mcap::WriteStatus status = file_.write({.channel_id = channel,
                                                 .sequence = sample.sequence,
-                                                .log_time_nsec = log_nsec(writer, sample),
+                                                .log_time_nsec = log_nsec,
                                                 .publish_time_nsec = sample.publish_time_nsec,
                                                 .data = data});
   note(status);

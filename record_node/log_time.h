@@ -1,0 +1,33 @@
+// record_node/log_time.h -- when a message of a take was there.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace cordis::record {
+
+/// The log times of what one writer says, in the order in which it came.
+///
+/// That of most messages is when they came. A force loop of this host has another thread send what it writes:
+/// then it is when the message was written, however late it came, unless another clock must have said so.
+class LogTime {
+ public:
+  static constexpr std::uint64_t kLongestDetour = 60'000'000'000;  ///< [ns]
+
+  /// @param received_nsec, published_nsec  UTC [ns]
+  /// @param is_of_loop_here  a force loop of this host writes it
+  /// @return UTC [ns]; never below that of the message before
+  std::uint64_t next(std::uint64_t received_nsec, std::uint64_t published_nsec,
+                     bool is_of_loop_here) noexcept {
+    const bool is_sent_later = is_of_loop_here && received_nsec > published_nsec &&
+                               received_nsec - published_nsec <= kLongestDetour;
+    const std::uint64_t time = is_sent_later ? published_nsec : received_nsec;
+    last_nsec_ = is_of_loop_here ? std::max(last_nsec_, time) : time;
+    return last_nsec_;
+  }
+
+ private:
+  std::uint64_t last_nsec_ = 0;
+};
+
+}  // namespace cordis::record
