@@ -2,6 +2,7 @@
 #include "record_node/mcap/scan.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "record_node/mcap/byte_reader.h"
@@ -123,9 +124,10 @@ class Scanner {
   std::uint64_t position_ = 0;
   Scan scan_;
   ChunkContents contents_;
-  bool is_chunk_open_ = false;               // its records are read
-  std::map<std::uint16_t, Damage> schemas_;  // outside chunks: where they are, if they are wrong
-  std::map<std::uint16_t, Damage> channels_;
+  bool is_chunk_open_ = false;  // its records are read
+  using Places = std::map<std::uint16_t, std::vector<Damage>>;
+  Places schemas_;  // outside chunks: where they are, if they are wrong; more than once if repeated
+  Places channels_;
   bool is_in_chunk_ = false;  // the message indexes of the last chunk may follow
   std::map<std::uint16_t, MessageIndex> entries_;  // of the last chunk
 };
@@ -136,15 +138,17 @@ bool Scanner::add_description(std::map<std::uint16_t, T>& known, std::optional<T
                               std::span<const std::byte> content) {
   if (!value || !fills(*value, content)) return false;
   const auto [found, is_new] = known.try_emplace(value->id, *value);
-  std::map<std::uint16_t, Damage>& places = std::is_same_v<T, Schema> ? schemas_ : channels_;
+  Places& places = std::is_same_v<T, Schema> ? schemas_ : channels_;
   const std::uint16_t id = value->id;
-  if (!is_chunk_open_ && is_new) {
-    places[id] = {position_, kRecordHead + content.size(), "it is not what a chunk repeats", false};
+  const bool is_same = found->second == *value;
+  if (!is_chunk_open_ && (is_new || (is_same && places.contains(id)))) {
+    places[id].push_back(
+        {position_, kRecordHead + content.size(), "it is not what a chunk repeats", false});
   }
-  if (is_new || found->second == *value) return true;
+  if (is_new || is_same) return true;
   if (!is_chunk_open_ || !places.contains(id)) return false;
   found->second = std::move(*value);
-  scan_.damages.push_back(places.extract(id).mapped());
+  std::ranges::move(places.extract(id).mapped(), std::back_inserter(scan_.damages));
   return true;
 }
 

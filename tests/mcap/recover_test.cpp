@@ -9,7 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "record_node/mcap/crc32.h"
 #include "record_node/mcap/file_error.h"
+#include "record_node/mcap/format.h"
 #include "record_node/mcap/take_check.h"
 #include "tests/mcap/random_take.h"
 #include "tests/mcap/take_folder.h"
@@ -244,6 +246,51 @@ TEST(Recover, MakesATakeWholeWhoseIndexIsWrittenTwice) {
   const TakeCheck check = check_take(path);
   EXPECT_TRUE(check.faults.empty()) << check.faults.front().text;
   EXPECT_TRUE(recover(path).was_whole);
+}
+
+/// Descriptions outside the chunks that all say the same, and a chunk that says otherwise.
+TEST(Recover, RemovesEveryDescriptionThatAChunkSaysOtherwise) {
+  const TakeFolder folder;
+  const auto path = folder / "otherwise.mcap";
+  for (std::size_t count = 1; count <= 4; ++count) {
+    SCOPED_TRACE(count);
+    const Schema schema{1, "T", "omgidl", "struct T { long a; };"};
+    const Channel channel{1, 1, "a", "cdr", {}};
+    Bytes records;
+    append(records, schema);
+    append(records, channel);
+    append(records, Message{1, 0, 5, 5, {}});
+    Bytes bytes;
+    append_magic(bytes);
+    append_header(bytes, "test");
+    for (std::size_t i = 0; i < count; ++i) append(bytes, Schema{1, "U", "omgidl", ""});
+    for (std::size_t i = 0; i < count; ++i) append(bytes, Channel{1, 1, "b", "cdr", {}});
+    append(bytes, ChunkView{5, 5, records.size(), crc32(records), "", records});
+    std::vector<char> contents(bytes.size());
+    std::memcpy(contents.data(), bytes.data(), bytes.size());
+    write_file(path, contents);
+
+    const Recovery recovery = recover(path);
+
+    EXPECT_EQ(recovery.damages.size(), 2 * count);
+    EXPECT_FALSE(recovery.has_loss());
+    const Reader reader(path);
+    EXPECT_EQ(reader.damage(), "");
+    EXPECT_EQ(messages_of(reader).size(), 1u);
+    EXPECT_EQ(reader.channels().at(1), channel);
+    EXPECT_TRUE(check_take(path).faults.empty());
+  }
+}
+
+TEST(Recover, MakesTakesOfTheCorpusWhole) {
+  const TakeFolder folder;
+  const auto path = folder / "found.mcap";
+  for (const char* name : {"channels_that_a_chunk_says_otherwise", "index_written_twice"}) {
+    std::filesystem::remove(path);
+    std::filesystem::copy_file(std::filesystem::path(CORDIS_MCAP_CORPUS) / name, path);
+    recover(path);
+    EXPECT_EQ(Reader(path).damage(), "") << name;
+  }
 }
 
 /// A chunk gets the code of a record of others, and a length that covers the chunks after it, up to the
