@@ -14,6 +14,7 @@ struct Increment1d {
   Increment1d(const ForceColumns& columns, const std::uint32_t* a, const std::uint32_t* b) noexcept
       : elongation_increment(Lanes::difference_1d(columns.position, a, b) -
                              Lanes::difference_1d(columns.delayed, a, b)),
+        moved_along(elongation_increment),
         before_moved(elongation_increment) {}
 
   Row factor(Row tension) const noexcept { return tension; }
@@ -23,6 +24,7 @@ struct Increment1d {
   }
 
   Row elongation_increment;  // [m]
+  Row moved_along;           // [m]
   Row before_moved;          // [m]
 };
 
@@ -38,8 +40,14 @@ struct IncrementNd {
     const Row square = along.x * along.x + along.y * along.y + along.z * along.z;
     const Row3 moved{along.x - before.x, along.y - before.y, along.z - before.z};
     inverse = Lanes::inverse_or_zero(square, Lanes::sqrt(square));
-    elongation_increment = (along.x * moved.x + along.y * moved.y + along.z * moved.z) * inverse;
+    const Row along_moved = along.x * moved.x + along.y * moved.y + along.z * moved.z;
+    moved_along = along_moved * inverse;
     before_moved = before.x * moved.x + before.y * moved.y + before.z * moved.z;
+    // |along| - |before|, without the difference of two lengths that are almost the same
+    const Row square_before = before.x * before.x + before.y * before.y + before.z * before.z;
+    const Row both_lengths = Lanes::sqrt(square) + Lanes::sqrt(square_before);
+    elongation_increment =
+        (along_moved + before_moved) * Lanes::inverse_or_zero(both_lengths, both_lengths);
   }
 
   Row factor(Row tension) const noexcept { return tension * inverse; }
@@ -50,12 +58,14 @@ struct IncrementNd {
 
   Row3 along;                // [m]
   Row inverse;               // 1 / distance, 0 where that is 0
-  Row elongation_increment;  // [m]
+  Row elongation_increment;  // change of the distance [m]
+  Row moved_along;           // change of the vector, along it [m]
   Row before_moved;          // former vector * its change [m^2]
 };
 
-/// F(n) = a F(n-1) + gain * elongation increment. What the element stores is F^2 / 2K; it has taken
-/// the rest of the work of F.
+/// F(n) = a F(n-1) + gain * change of the distance. What the element stores is F^2 / 2K; its damper takes the
+/// rest of the mean of both forces times that change. What a turn in one step adds to the work of the forces is
+/// no dissipation: it stands with the elastic work, where the account compares it with what is stored.
 template <class Lanes, template <class> class Growth>
 void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
                         LinkWork& work_of_all) noexcept {
@@ -80,10 +90,11 @@ void add_maxwell_forces(const MaxwellRows& links, const ForceColumns& columns,
                           Lanes::load(links.gain + i) * link.elongation_increment;
       const Row factor = link.factor(tension);
       const Row work =
-          tension * link.elongation_increment + Lanes::load(links.factor + i) * link.before_moved;
+          tension * link.moved_along + Lanes::load(links.factor + i) * link.before_moved;
+      const Row along_the_element = (tension + before) * link.elongation_increment;
       const Row more = (tension * tension - before * before) * Lanes::load(links.compliance + i);
-      stored[part] = stored[part] + more;
-      taken[part] = taken[part] + (work - more);
+      stored[part] = stored[part] + (more + (work - along_the_element));
+      taken[part] = taken[part] + (along_the_element - more);
       Lanes::store(links.tension + i, tension);
       Lanes::store(links.factor + i, factor);
       link.add(columns.force, a, b, factor);

@@ -89,8 +89,9 @@ void MaxwellArray::go_back(const MatArray& mats) noexcept {
     const Vec3 along = mats.position(b) - mats.position(a);
     const Vec3 moved =
         along - (mats.delayed_at_rest(b) - mats.delayed_at_rest(a));  // ports have none to undo
-    const double length = is_1d_ ? 1.0 : along.norm();
-    const double product = is_1d_ ? moved.x() : along.dot(moved);
+    const Vec3 before = along - moved;
+    const double length = is_1d_ ? 1.0 : along.norm() + before.norm();
+    const double product = is_1d_ ? moved.x() : (along + before).dot(moved);
     if (length > 0.0) tension_[l] -= gain_[l] * (product / length);
   }
 }
