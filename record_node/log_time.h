@@ -8,8 +8,9 @@ namespace cordis::record {
 
 /// The log times of what one writer says, in the order in which it came.
 ///
-/// That of most messages is when they came. A force loop of this host has another thread send what it writes:
-/// then it is when the message was written, however late it came, unless another clock must have said so.
+/// Most messages have the time at which they came. A force loop of this host has another thread send what it
+/// writes. Its messages have the time at which they were written, however late they came, unless more than a
+/// minute lies between: that is another clock.
 class LogTime {
  public:
   static constexpr std::uint64_t kLongestDetour = 60'000'000'000;  ///< [ns]

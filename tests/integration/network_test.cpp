@@ -172,13 +172,17 @@ std::vector<Row> read_trace(const std::filesystem::path& path) {
 
 /// No force moved faster than the slew limit. A row may be late, and its force with it; a decision
 /// and its row are less than half a period apart unless the machine takes the core away. A loop that
-/// the machine stops for 18 ms restarts from zero force, since its motors may have let go meanwhile.
+/// the machine stops for 18 ms restarts from zero force, since its motors may have let go meanwhile. If it
+/// stops between a decision and its row, the restart is the next row.
 void expect_slew_limit(const std::vector<Row>& rows) {
   constexpr double kPeriod = 1e-3;
   constexpr double kStall = 0.018 - kPeriod;
+  double passed_before = 0.0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double passed = static_cast<double>(rows[i].time_nsec - rows[i - 1].time_nsec) * 1e-9;
-    if (passed > kStall && rows[i].commanded == 0.0) continue;
+    const bool restarts = passed > kStall || passed_before > kStall;
+    passed_before = passed;
+    if (restarts && rows[i].commanded == 0.0) continue;
     const double longest = std::max(passed, kPeriod) + 0.5 * kPeriod;
     ASSERT_LE(std::abs(rows[i].commanded - rows[i - 1].commanded), kSlew * longest + kRounding)
         << "row " << i;
