@@ -3,10 +3,12 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { drawn, look, openScenePage, textOf, viz } from './browser.mjs';
+import { drawn, isDark, look, openScenePage, textOf, viz } from './browser.mjs';
 import { out, runCases, source, until } from './session.mjs';
 
-const [CORE, SKIN, BOB, ANCHOR, PORT] = [10, 30, 45, 59, 12]; // MATs
+const [CORE, SKIN, BOB, PORT, TOOL] = [10, 30, 45, 12, 15]; // MATs
+const TOOL_RADIUS_M = 0.03;
+const [PITCH_M, WAY_M] = [0.01375, 0.01]; // of the keys of scene_source
 const MASS_KG = 0.001;
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
@@ -74,7 +76,7 @@ const cases = {
 
   'a MAT that is picked says its net force, and shows it as an arrow on demand': async ({ page }) => {
     await pickCore(page);
-    await until('its force is said', async () => /net force [\d.]+\s?(mN|µN|nN), mean over two frames$/.test(await textOf(page, '#picked-values')));
+    await until('its force is said', async () => /net force [\d.]+\s?(mN|µN|nN), mean over [\d.]+\s?m?s$/.test(await textOf(page, '#picked-values')));
     // The scene moves by formula: no acceleration is beyond that of its two modes.
     const modes = [[0.9, 1], [1.7, 0.4]];
     const largest = MASS_KG * 0.03 * modes.reduce((sum, [hz, share]) => sum + share * (2 * Math.PI * hz) ** 2, 0);
@@ -98,6 +100,24 @@ const cases = {
     await page.click('#picked-close');
   },
 
+  'what is picked has its name at once': async ({ page }) => {
+    await pickCore(page);
+    await page.click('#picked-close');
+    await until('another MAT is picked', async () => {
+      const { x, y } = await page.evaluate((mat) => window.viz.project(mat), BOB);
+      // Before the next frame is drawn, the panel names nothing else.
+      const name = await page.evaluate(([left, top]) => {
+        const stage = document.querySelector('#stage canvas');
+        for (const type of ['pointerdown', 'pointerup'])
+          stage.dispatchEvent(new PointerEvent(type, { bubbles: true, clientX: left, clientY: top, pointerId: 1, pointerType: 'mouse' }));
+        return document.querySelector('#picked').hidden ? '' : document.querySelector('#picked-name').textContent;
+      }, [x, y]);
+      assert.notEqual(name, 'rope.core[10]', 'the name of what was picked before');
+      return /^string3/.test(name);
+    });
+    await page.click('#picked-close');
+  },
+
   'a link that is picked has no such button': async ({ page }) => {
     await pickCore(page);
     assert.equal(await page.locator('#picked-force').isVisible(), true);
@@ -105,7 +125,7 @@ const cases = {
       const { x, y } = await page.evaluate((mat) => {
         const [a, b] = [window.viz.project(mat), window.viz.project(mat + 1)];
         return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 };
-      }, CORE + 5);
+      }, CORE - 5);
       await page.mouse.click(x, y);
       return /^joints/.test(await textOf(page, '#picked-name'));
     });
@@ -138,6 +158,61 @@ const cases = {
     }
   },
 
+  'a key stands in the view at its port, as wide as its pitch, filled as far as it is down': async ({ page }) => {
+    const key = (await legendOf(page)).find(([mark]) => mark === 'key');
+    assert.deepEqual(key, ['key', 'key in true size, filled as far as it is down', palettes.dark.port]);
+    // Ink on the sheet of marks at places of the key, with how far it is down in the same frame.
+    const seen = () =>
+      page.evaluate(
+        ([mat, pitch, way]) => {
+          const sheet = document.querySelector('#marks');
+          const box = sheet.getBoundingClientRect();
+          const [x, y] = window.viz.position(mat);
+          const inkAt = (across, share) => {
+            const place = window.viz.screenOf([x + across * pitch, -share * way, 0]);
+            const [left, top] = [place.x - box.left, place.y - box.top].map((value) => Math.round((value * sheet.width) / box.width));
+            return sheet.getContext('2d').getImageData(left - 1, top - 1, 3, 3).data.some((byte, i) => i % 4 === 3 && byte > 0);
+          };
+          const [left, right, beside] = [-0.5, 0.5, 0.8].map((across) => inkAt(across, 0.5));
+          return { down: -y / way, left, right, beside, end: inkAt(0.2, 1), below: inkAt(0.2, 1.5), high: inkAt(0.2, 0.3), low: inkAt(0.2, 0.8) };
+        },
+        [PORT, PITCH_M, WAY_M],
+      );
+    const when = (what, condition) =>
+      until(what, async () => {
+        const all = await seen();
+        return condition(all.down) && all;
+      });
+    const outline = { left: true, right: true, beside: false, end: true, below: false };
+    const { down: up, ...released } = await when('it is up', (share) => share < 0);
+    assert.deepEqual(released, { ...outline, high: false, low: false }, `${up} deep`);
+    const { down, ...pressed } = await when('it is down', (share) => share > 0.9);
+    assert.deepEqual(pressed, { ...outline, high: true, low: true }, `${down} deep`);
+    const { down: half, ...between } = await when('it is half down', (share) => share > 0.4 && share < 0.7);
+    assert.deepEqual(between, { ...outline, high: true, low: false }, `${half} deep`);
+    await page.screenshot({ path: join(out, 'looks_keys.png') });
+  },
+
+  'what a device holds is a ring of true size': async ({ page }) => {
+    assert.deepEqual((await legendOf(page)).filter(([mark]) => mark === 'ring' || mark === 'tool'), [
+      ['ring', 'tool that it holds, in true size', palettes.dark.port],
+    ]);
+    const [rim, hole, outside] = await page.evaluate(
+      ([mat, radius]) => {
+        const [x, y, z] = window.viz.position(mat);
+        // Off the string, which runs through its middle.
+        return [0.88, 0.6, 1.12].map((share) => {
+          const place = window.viz.screenOf([x + 0.6 * share * radius, y + 0.8 * share * radius, z]);
+          return window.viz.pixelAt(place.x, place.y);
+        });
+      },
+      [TOOL, TOOL_RADIUS_M],
+    );
+    assertHue(rim, palettes.dark.port, 'the rim');
+    assert.ok(isDark(hole) && isDark(outside), `${hole} inside, ${outside} outside`);
+    await page.screenshot({ path: join(out, 'looks_ring.png') });
+  },
+
   'a click on a key picks its port': async ({ page }) => {
     await page.click('#keyboards button >> nth=2');
     await until('its port is picked', async () => (await textOf(page, '#picked-name')) === 'finger');
@@ -161,4 +236,4 @@ const cases = {
   },
 };
 
-await runCases(cases, () => openScenePage('--scene', 'string', '--bodies', '3', '--colours', '--keyboard'));
+await runCases(cases, () => openScenePage('--scene', 'string', '--bodies', '3', '--colours', '--keyboard', '--tool-radius', String(TOOL_RADIUS_M)));

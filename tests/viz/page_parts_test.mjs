@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colours', 'keyboards'];
+  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -60,6 +60,28 @@ const cases = {
       const wanted = -(pulsation ** 2) * Math.cos(pulsation * h + phase) * sinc ** 2;
       assert.ok(Math.abs(forces.of(0)[1] - wanted) < (8 * ROUNDING) / h ** 2, `run ${run}: ${forces.of(0)[1]} N, wanted ${wanted}`);
     }
+  },
+
+  'frames that are single steps apart show no rounding of their places': () => {
+    const random = lot(4);
+    for (let run = 0; run < RUNS; ++run) {
+      const [mass, stepS] = [0.001, 1 / (2000 + 98000 * random())];
+      const acceleration = 20 * (random() - 0.5);
+      const [place, velocity] = [0.6 * (random() - 0.5), random() - 0.5];
+      const forces = new NetForces(Float32Array.of(mass));
+      const placesAt = (t) => Float32Array.of(0, place + velocity * t + (acceleration * t * t) / 2, 0);
+      for (let step = 0; step * stepS < 0.006; ++step) forces.append(placesAt(step * stepS), step * stepS);
+      const force = forces.of(0)?.[1] ?? Number.NaN;
+      // Four roundings of places below 0.5 m, over intervals of 1 ms.
+      assert.ok(Math.abs(force - mass * acceleration) <= (4 * mass * 0.5 * ROUNDING) / 1e-3 ** 2, `run ${run}: ${force} N, wanted ${mass * acceleration}`);
+      assert.ok(forces.spanS >= 2e-3 && forces.spanS < 4e-3, `mean over ${forces.spanS} s`);
+    }
+  },
+
+  'a page keeps few frames, however near they are': () => {
+    const forces = new NetForces(Float32Array.of(1));
+    for (let step = 0; step < 5000; ++step) forces.append(new Float32Array(3), step / 44100);
+    assert.ok(forces.kept.length <= 12, `${forces.kept.length} frames`);
   },
 
   'nothing is said of a force before the third frame, nor across a jump back': () => {
@@ -110,6 +132,33 @@ const cases = {
     const [{ keys }] = list;
     assert.deepEqual(keys.map(({ port: name, wayM }) => [name, wayM]), [['', 0.01], ['low', 0.015], ['', 0.005]]);
     assert.ok(Math.abs(depthOf(keys[1], [9, 9, 2.99]) - 0.01) < 1e-12);
+  },
+
+  'one liaison with other parameters for some links looks alike, whatever other liaisons there are': () => {
+    const random = lot(6);
+    const machine = (name, ...states) => ({ name, states });
+    const machines = [machine('copper', 'virgin', 'broken'), machine('glue', 'stuck'), machine('copper', 'virgin', 'broken'), machine('copper', 'other')];
+    for (let run = 0; run < RUNS; ++run) {
+      const stateMachines = Uint16Array.from({ length: 40 }, () => Math.floor(4 * random()));
+      const groups = new LinkGroups({ state_machines: machines }, { stateMachines, linkCount: 40 });
+      const kinds = new Set([...stateMachines].map((number) => JSON.stringify(machines[number])));
+      assert.equal(groups.list.length, kinds.size, 'a group for each name with its states');
+      stateMachines.forEach((number, link) => {
+        const { name, states } = groups.of(link);
+        assert.deepEqual({ name, states }, machines[number]);
+      });
+    }
+  },
+
+  'a key is as wide as its pitch, across its way': () => {
+    const random = lot(5);
+    for (let run = 0; run < RUNS; ++run) {
+      const free = [0, 1, 2].map(() => random() - 0.5);
+      const up = (run === 0 ? [0, 0, 1] : free).map((value, _, all) => value / Math.hypot(...all));
+      const half = halfWidthOf(up, 0.02);
+      assert.ok(Math.abs(Math.hypot(...half) - 0.01) < 1e-12, `${half}`);
+      assert.ok(Math.abs(half.reduce((sum, value, k) => sum + value * up[k], 0)) < 1e-12, `${half} across ${up}`);
+    }
   },
 };
 

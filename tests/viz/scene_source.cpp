@@ -3,7 +3,7 @@
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
 //                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--bad-frames]
-//                     [--colours] [--keyboard]
+//                     [--colours] [--keyboard] [--tool-radius METRES]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <algorithm>
 #include <atomic>
@@ -53,6 +53,7 @@ struct Options {
   bool surfaces = false;
   bool colours = false;   // of the scene's own, for three bodies
   bool keyboard = false;  // the device is one of four keys
+  float tool_radius_m = 0.0F;
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -87,6 +88,8 @@ Options read_options(int argc, char** argv) {
       options.surfaces = true;
     } else if (word == "--colours") {
       options.colours = true;
+    } else if (word == "--tool-radius") {
+      options.tool_radius_m = std::stof(value());
     } else if (word == "--keyboard") {
       options.keyboard = true;
     } else if (word == "--bad-frames") {
@@ -354,6 +357,7 @@ int publish(const Options& options) {
       options.scene == "grid" ? grid_scene(options.mats) : string_scene(options.mats);
   if (options.amplitude_m > 0.0) scene.amplitude_m = options.amplitude_m;
   if (options.space != 0) scene.description.space(options.space);
+  scene.description.mat_radius_m()[scene.port_mat + 3] += options.tool_radius_m;
   if (options.states) describe_states(scene.description);
   if (options.states && options.liaisons) describe_other_liaisons(scene.description);
   if (options.surfaces) scene.description.surfaces(test::steps_and_post());

@@ -46,6 +46,8 @@ export class Bodies {
   readonly hasFixedPoints: boolean;
   readonly hasFixedBalls: boolean;
   readonly hasPorts: boolean;
+  readonly hasRings: boolean; // tools with a radius
+  readonly hasPunctualTools: boolean;
   private readonly given: GivenColours;
   private readonly bodyOf: Uint16Array; // per MAT an index in the list
   private readonly isHeld: Uint8Array; // per MAT: a port, or the tool of one
@@ -57,7 +59,10 @@ export class Bodies {
     const { kinds, radii, matCount } = topology;
     this.bodyOf = new Uint16Array(matCount);
     this.isHeld = new Uint8Array(matCount);
-    for (const tool of description.tools) if (tool !== null) this.isHeld[tool] = 1;
+    const tools = description.tools.filter((tool) => tool !== null);
+    for (const tool of tools) this.isHeld[tool] = 1;
+    this.hasRings = tools.some((tool) => radii[tool] !== 0);
+    this.hasPunctualTools = tools.some((tool) => radii[tool] === 0);
     for (const { mat } of description.ports) this.isHeld[mat] = 1;
     for (let mat = 0; mat < matCount; ++mat) if (kinds[mat] === MAT_PORT) this.isHeld[mat] = 1;
     this.given = new GivenColours(description.colours, matCount);

@@ -64,15 +64,21 @@ export class KeyboardPanel {
   /** @param pick  the MAT of a port whose key a person has pressed on the page */
   constructor(private readonly pick: (mat: number) => void) {}
 
-  /** Takes what is known of scene and devices; draws again where that has changed. */
-  describe(description: Description, devices: DeviceShape[]): void {
+  /** True if a key plays a port. */
+  get playsPorts(): boolean {
+    return this.list.some(({ keys }) => keys.some(({ port }) => port !== ''));
+  }
+
+  /** Takes what is known of scene and devices; draws again where that has changed. @returns whether it has */
+  describe(description: Description, devices: DeviceShape[]): boolean {
     const list = keyboardsOf(description, devices);
     const words = JSON.stringify([description.scene, list]);
-    if (words === this.known) return;
+    if (words === this.known) return false;
     this.known = words;
     this.list = list;
     this.panel.hidden = list.length === 0;
     fillRows(this.panel, list, () => this.makeKeyboard(), (row, keyboard) => this.writeKeyboard(row, keyboard));
+    return true;
   }
 
   /** Shows how deep each key is. */

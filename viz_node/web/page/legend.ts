@@ -15,18 +15,21 @@ const MOST_STATES = 3; // that have one colour and one pattern
 const MOST_LINKS = 12;
 
 export interface LegendEntry {
-  mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'link solid' | 'link dashed' | 'link dotted' | 'surface';
+  mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'ring' | 'key' | 'link solid' | 'link dashed' | 'link dotted' | 'surface';
   text: string;
   colour: string;
 }
 
-export function legendOf(description: Description, view: SceneView, colouring: Colouring, palette: Palette): LegendEntry[] {
+/** @param hasKeys  keys of a keyboard are drawn in the view */
+export function legendOf(description: Description, view: SceneView, hasKeys: boolean, colouring: Colouring, palette: Palette): LegendEntry[] {
   const { bodies } = view;
   const entries = massEntries(view, colouring, palette);
   if (bodies.hasFixedPoints) entries.push({ mark: 'fixed-point', text: 'fixed point', colour: palette.fixed });
   if (bodies.hasFixedBalls) entries.push({ mark: 'mass', text: 'fixed ball', colour: palette.fixed });
   if (bodies.hasPorts) entries.push({ mark: 'handle', text: 'handle of a device', colour: palette.port });
-  if (description.tools.some((tool) => tool !== null)) entries.push({ mark: 'tool', text: 'tool that it holds', colour: palette.port });
+  if (bodies.hasRings) entries.push({ mark: 'ring', text: 'tool that it holds, in true size', colour: palette.port });
+  if (bodies.hasPunctualTools) entries.push({ mark: 'tool', text: 'tool that it holds', colour: palette.port });
+  if (hasKeys) entries.push({ mark: 'key', text: 'key in true size, filled as far as it is down', colour: palette.port });
   const ofSurfaces = bodies.ofSurfaces;
   const plain = description.surfaces.filter((_, i) => ofSurfaces[i] === null);
   if (plain.length > 0) entries.push({ mark: 'surface', text: surfaceText(plain), colour: palette.surface });

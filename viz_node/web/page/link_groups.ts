@@ -4,7 +4,7 @@ import { NO_STATE_MACHINE, type Description, type Topology } from './protocol.ts
 
 export const PATTERNS = ['solid', 'dashed', 'dotted'] as const;
 
-/** Links of one liaison with states, or those without. */
+/** Links of one liaison with states, whatever their parameters, or those without. */
 export interface LinkGroup {
   name: string; // of the liaison; empty for links without states
   states: string[];
@@ -20,12 +20,18 @@ export class LinkGroups {
     const counts = new Map<number, number>();
     for (const machine of stateMachines) counts.set(machine, (counts.get(machine) ?? 0) + 1);
     if (stateMachines.length === 0 && linkCount > 0) counts.set(NO_STATE_MACHINE, linkCount);
-    const machines = [...counts.keys()].sort((a, b) => counts.get(b)! - counts.get(a)! || a - b);
-    this.list = machines.map((machine, place) => {
+    // One liaison with other parameters for some of its links is several state machines of one name.
+    const keyOf = (machine: number) => JSON.stringify([state_machines[machine]?.name ?? '', state_machines[machine]?.states ?? []]);
+    const sizes = new Map<string, number>();
+    for (const [machine, count] of counts) sizes.set(keyOf(machine), (sizes.get(keyOf(machine)) ?? 0) + count);
+    const machines = [...counts.keys()].sort((a, b) => sizes.get(keyOf(b))! - sizes.get(keyOf(a))! || a - b);
+    const groups = new Map<string, LinkGroup>();
+    for (const machine of machines) {
       const { name = '', states = [] } = state_machines[machine] ?? {};
-      return { name, states, pattern: Math.min(place, PATTERNS.length - 1) };
-    });
-    this.groupOf = new Map(machines.map((machine, place) => [machine, this.list[place]!]));
+      if (!groups.has(keyOf(machine))) groups.set(keyOf(machine), { name, states, pattern: Math.min(groups.size, PATTERNS.length - 1) });
+    }
+    this.list = [...groups.values()];
+    this.groupOf = new Map(machines.map((machine) => [machine, groups.get(keyOf(machine))!]));
   }
 
   of(link: number): LinkGroup {

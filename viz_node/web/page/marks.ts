@@ -43,6 +43,23 @@ export class Marks {
     this.stroke(colour, 1.5, [], (pen) => pen.arc(to.x, to.y, 5, 0, 2 * Math.PI));
   }
 
+  /** Outline of a shape, and how much of it is filled: a shape of its own. */
+  shape(corners: Point[], filled: Point[], colour: string): void {
+    const pen = this.pen;
+    if (pen === null) return;
+    const walk = (points: Point[]) => {
+      points.forEach(({ x, y }, i) => (i === 0 ? pen.moveTo(x, y) : pen.lineTo(x, y)));
+      pen.closePath();
+    };
+    pen.beginPath();
+    walk(filled);
+    pen.globalAlpha = 0.45;
+    pen.fillStyle = colour;
+    pen.fill();
+    pen.globalAlpha = 1;
+    this.stroke(colour, 1.2, [], () => walk(corners));
+  }
+
   ring(middle: Point, radius: number, colour: string, width = 2): void {
     this.stroke(colour, width, [], (pen) => pen.arc(middle.x, middle.y, radius, 0, 2 * Math.PI));
   }

@@ -7,6 +7,10 @@ import { MAT_FIXED } from './wire.ts';
 const SHOWN_FIXED_POINT = 3;
 const SHOWN_TOOL = 4;
 const SHOWN_NOTHING = 5;
+const SHOWN_RING = 6;
+
+/** Radius of the hole of a ring, a share of its own. */
+const RING_HOLE = 0.76;
 
 const SPEED_COLOUR = /* glsl */ `
   // Dark blue, teal, yellow: readable for colour-blind eyes, and on a projector.
@@ -31,7 +35,7 @@ const MAT_VERTEX = /* glsl */ `
   in vec3 previous;   // one frame before [m]
   in float radius;    // [m]
   in vec3 tint;       // colour of its body
-  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 tool, 5 not shown
+  in float kind;      // 0 mass, 1 fixed ball, 2 port, 3 fixed point, 4 punctual tool, 5 not shown, 6 tool with a radius
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float pixels_per_unit;   // of the plane at clip w = 1
@@ -51,8 +55,8 @@ const MAT_VERTEX = /* glsl */ `
     gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
     size = max(radius_share * radius, min_pixels[k >= 4 ? 0 : k] / pixels);
-    // A square where a punctual MAT is fixed; a sphere with a halo where a hand is.
-    shape = k == 3 ? 1 : (k == 2 ? 2 : 0);
+    // A square where a punctual MAT is fixed; a sphere with a halo where a hand is; a ring, as thimbles are, for what it holds.
+    shape = k == 3 ? 1 : (k == 2 ? 2 : (k == 6 ? 3 : 0));
     centre = view_position.xyz;
     gl_PointSize = 2.0 * size * pixels * (shape == 2 ? 1.9 : 1.0) * MARGIN;
     colour = tint;
@@ -91,6 +95,16 @@ const MAT_FRAGMENT = /* glsl */ `
       float edge = max(abs(point.x), abs(point.y));
       if (edge > 1.0) discard;
       pixel = vec4(edge > 0.62 ? colour : colour * 0.35, 1.0);
+    #ifdef SPHERES
+      gl_FragDepth = gl_FragCoord.z;
+    #endif
+      return;
+    }
+    if (shape == 3) {
+      float away = length(point);
+      if (away > 1.0 || away < RING_HOLE) discard;
+      float across = (2.0 * away - 1.0 - RING_HOLE) / (1.0 - RING_HOLE);
+      pixel = vec4(lit(vec3(point / away * across, sqrt(max(0.0, 1.0 - across * across)))), 1.0);
     #ifdef SPHERES
       gl_FragDepth = gl_FragCoord.z;
     #endif
@@ -191,14 +205,14 @@ export function sceneUniforms(): SceneUniforms {
 /** Kinds as the shader distinguishes them: a fixed point without a radius is no ball, and what has a shape of its own is not shown. */
 export function shownKinds(kinds: Uint8Array, radii: Float32Array, tools: number[], shapes: number[]): Uint8Array {
   const shown = kinds.map((kind, i) => (kind === MAT_FIXED && radii[i] === 0 ? SHOWN_FIXED_POINT : kind));
-  for (const tool of tools) shown[tool] = SHOWN_TOOL;
+  for (const tool of tools) shown[tool] = radii[tool] === 0 ? SHOWN_TOOL : SHOWN_RING;
   for (const mat of shapes) shown[mat] = SHOWN_NOTHING;
   return shown;
 }
 
 export function matProgram(spheres: boolean): Program {
   // In perspective the outline of a sphere is a little larger than its radius.
-  const defines = `#define MARGIN ${spheres ? '1.08' : '1.0'}\n${spheres ? '#define SPHERES\n' : ''}`;
+  const defines = `#define MARGIN ${spheres ? '1.08' : '1.0'}\n#define RING_HOLE ${RING_HOLE}\n${spheres ? '#define SPHERES\n' : ''}`;
   return { vertex: defines + MAT_VERTEX, fragment: defines + MAT_FRAGMENT };
 }
 

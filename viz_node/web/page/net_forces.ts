@@ -1,32 +1,65 @@
 // viz_node/web/page/net_forces.ts -- the force on a MAT from its motion: frames carry no forces.
 
+// Places are 32-bit numbers: at 0.3 m they are rounded by up to 15 nm. Frames that are this far apart show 0.1 mN of that on 1 g;
+// single steps of a fast scene would show a thousand times as much.
+const LEAST_APART_S = 1e-3;
+const LEAST_KEPT_APART_S = LEAST_APART_S / 4;
+
+interface Kept {
+  positions: Float32Array;
+  timeS: number;
+}
+
 /**
- * Net force on MATs, the mean over the last two frames, where the middle counts most. It is what all
- * that acts on a mass adds up to: links, contacts, fields and the medium.
+ * Net force on MATs, the mean over two intervals of at least LEAST_APART_S, where the middle counts most. They are those of the last
+ * two frames where frames are so far apart. It is what all that acts on a mass adds up to: links, contacts, fields and the medium.
  *
  * With places x0, x1, x2 at times h1 and h2 apart, 2 ((x2 - x1) / h2 - (x1 - x0) / h1) / (h1 + h2) is the mean of the acceleration,
  * weighted by a triangle whose tip is at x1. It is exact, whatever happened between the frames.
  */
 export class NetForces {
-  private places: Float32Array[] = []; // of the last frames, the newest last
-  private timesS: number[] = [];
+  private kept: Kept[] = []; // the oldest first, as many as are needed
+  private newest: Kept | null = null;
 
   constructor(private readonly masses: Float32Array) {}
 
   /** Takes a frame. One that is no later than the last begins again. */
   append(positions: Float32Array, timeS: number): void {
-    const last = this.timesS.at(-1);
-    if (last !== undefined && timeS <= last) [this.places, this.timesS] = [[], []];
-    this.places = [...this.places.slice(-2), positions];
-    this.timesS = [...this.timesS.slice(-2), timeS];
+    const last = this.newest;
+    this.newest = { positions, timeS };
+    if (last === null) return;
+    if (timeS <= last.timeS) {
+      this.kept = [];
+      return;
+    }
+    const lastKept = this.kept.at(-1);
+    if (lastKept === undefined || last.timeS - lastKept.timeS >= LEAST_KEPT_APART_S) this.kept.push(last);
+    // Whoever is older than the first of the three is not needed.
+    while (this.kept.length > 2 && this.threeOf(this.kept.slice(1)) !== null) this.kept.shift();
   }
 
-  /** Along x, y and z [N]; null for what is fixed or moved by a device, and before the third frame. */
+  /** The newest frame and two before it, the oldest first; null where there are none. */
+  private threeOf(kept: Kept[]): [Kept, Kept, Kept] | null {
+    const lastBefore = (one: Kept | null) => kept.filter(({ timeS }) => one !== null && one.timeS - timeS >= LEAST_APART_S).at(-1) ?? null;
+    const x2 = this.newest;
+    const x1 = lastBefore(x2);
+    const x0 = lastBefore(x1);
+    return x0 === null ? null : [x0, x1!, x2!];
+  }
+
+  /** Time over which of() is a mean [s]; 0 where there is none. */
+  get spanS(): number {
+    const three = this.threeOf(this.kept);
+    return three === null ? 0 : three[2].timeS - three[0].timeS;
+  }
+
+  /** Along x, y and z [N]; null for what is fixed or moved by a device, and before there are three frames. */
   of(mat: number): number[] | null {
     const mass = this.masses[mat] ?? 0;
-    if (mass === 0 || this.places.length < 3) return null;
-    const [x0, x1, x2] = this.places as [Float32Array, Float32Array, Float32Array];
-    const [t0, t1, t2] = this.timesS as [number, number, number];
+    const three = this.threeOf(this.kept);
+    if (mass === 0 || three === null) return null;
+    const [t0, t1, t2] = three.map(({ timeS }) => timeS) as [number, number, number];
+    const [x0, x1, x2] = three.map(({ positions }) => positions) as [Float32Array, Float32Array, Float32Array];
     return [0, 1, 2].map((axis) => {
       const place = 3 * mat + axis;
       const change = (x2[place]! - x1[place]!) / (t2 - t1) - (x1[place]! - x0[place]!) / (t1 - t0);

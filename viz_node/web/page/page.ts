@@ -6,8 +6,9 @@ import { firstTheme, keepTheme, paletteOf, type Palette, type ThemeName } from '
 import { ColouringBox, speedScale, stretchScale, type Scale } from './colouring.ts';
 import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
-import { joined, roundLength, withUnit } from './format.ts';
+import { count, joined, roundLength, withUnit } from './format.ts';
 import { Hud } from './hud.ts';
+import { drawKeys } from './key_marks.ts';
 import { KeyboardPanel } from './keyboards.ts';
 import { keysAreListed, toggleKeys } from './keys_dialog.ts';
 import { legendOf, showLegend, type LegendEntry } from './legend.ts';
@@ -38,6 +39,11 @@ function find<T extends HTMLElement>(selector: string): T {
   const found = document.querySelector<T>(selector);
   if (found === null) throw new Error(`the page has no ${selector}`);
   return found;
+}
+
+/** Words for colours of the scene that the page did not get; empty where it has all. */
+function leftOut({ colours, colours_left_out: more = 0 }: Description): string {
+  return more === 0 ? '' : `The view shows the first ${count(colours.length)} coloured parts of the scene; ${count(more)} more have the colours of their bodies`;
 }
 
 /** What has the focus needs the key itself. */
@@ -141,7 +147,7 @@ export class Page {
         this.clock.note(message.sent_nsec, performance.now());
         this.hud.setStatus(message);
         this.takeBar.update(message.nodes);
-        if (this.description !== null) this.keyboards.describe(this.description, message.devices);
+        if (this.description !== null && this.keyboards.describe(this.description, message.devices)) this.showLegend();
         this.parameters.update(this.maySet && this.connection.mayCommand && this.hud.commanded?.kind === 'sim_node', message.replies);
         return this.controls.update(this.hud.commanded, message.replies);
       case 'signals':
@@ -198,11 +204,12 @@ export class Page {
     if (topology.scene !== this.description?.scene || this.view !== null || this.renderer === null) return;
     const size = Math.max(topology.matCount, topology.linkCount / 2);
     const quality = chooseQuality(this.renderer.software, size, window.devicePixelRatio);
-    this.say(quality.note);
+    const note = [quality.note, leftOut(this.description)].filter((text) => text !== '').join('. ');
+    this.say(note);
     const { space, surfaces } = this.description;
     const tools = this.description.tools.filter((tool) => tool !== null);
     const changed = () => this.askToDraw();
-    const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : quality.note);
+    const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : note);
     try {
       const bodies = new Bodies(this.description, topology);
       const groups = new LinkGroups(this.description, topology);
@@ -414,7 +421,7 @@ export class Page {
 
   private get legend(): LegendEntry[] {
     if (this.description === null || this.view === null) return [];
-    return legendOf(this.description, this.view, this.colouring.value, this.palette);
+    return legendOf(this.description, this.view, this.keyboards.playsPorts, this.colouring.value, this.palette);
   }
 
   private showLegend(): void {
@@ -425,6 +432,7 @@ export class Page {
     this.marks.begin();
     if (this.view === null || this.description === null) return;
     const stage = this.stage.getBoundingClientRect();
+    if (this.lastFrame !== null) drawKeys(this.keyboards.list, this.view, this.marks, stage, this.palette.port);
     if (this.names) drawNames(this.marks, this.view, stage, this.palette.text);
     this.picked.draw(this.marks, stage, this.palette);
     this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });

@@ -64,9 +64,19 @@ export class Picked {
     this.followButton.hidden = thing === null || !('mat' in thing);
     this.forceButton.hidden = this.followButton.hidden;
     this.largestN = 0;
-    this.shownMs = 0;
+    this.write(); // at once: the panel never names what was picked before
     this.follow(false);
     this.showPlotted();
+  }
+
+  /** Writes its name and its values in the newest frame. */
+  private write(): void {
+    const view = this.view();
+    if (view === null || this.thing === null) return;
+    this.shownMs = performance.now();
+    const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link);
+    setText(this.name, name);
+    setText(this.values, values);
   }
 
   /** Shows whether it is plotted. */
@@ -90,12 +100,7 @@ export class Picked {
     } else {
       view.endsOf(this.thing.link).forEach((mat) => ring(mat, 3));
     }
-    const now = performance.now();
-    if (now - this.shownMs < REFRESH_MS) return;
-    this.shownMs = now;
-    const [name, values] = 'mat' in this.thing ? matText(view, this.thing.mat) : linkText(view, this.thing.link);
-    setText(this.name, name);
-    setText(this.values, values);
+    if (performance.now() - this.shownMs >= REFRESH_MS) this.write();
   }
 
   /** An arrow whose full length is the largest force of late. */
@@ -155,7 +160,8 @@ function matText(view: SceneView, mat: number): [string, string] {
   const [x, y, z] = view.place(mat).map((value) => joined(withUnit(value, 'm')));
   const part = view.componentOf(mat);
   const force = view.forceOn(mat);
-  const net = force === null ? '' : ` · net force ${joined(withUnit(Math.hypot(...force), 'N'))}, mean over two frames`;
+  const span = joined(withUnit(view.forceSpanS, 's'));
+  const net = force === null ? '' : ` · net force ${joined(withUnit(Math.hypot(...force), 'N'))}, mean over ${span}`;
   const component = part === null ? '' : ` · component ${part.place} by size, ${count(part.component.size)} MATs`;
   return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${net}${component}`];
 }

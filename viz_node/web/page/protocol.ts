@@ -132,6 +132,7 @@ export interface Description {
   signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
   surfaces: Surface[];
   colours: ColouredRange[];
+  colours_left_out?: number; // that viz_node knows beside these
 }
 
 /** The MATs that hands move by a coupling: they have the name of a port whose own MAT is the handle. */

@@ -227,9 +227,13 @@ export class SceneView {
     return this.shownForS > 0 ? Math.hypot(...moved) / this.shownForS : Number.NaN;
   }
 
-  /** Net force on a MAT along x, y and z, the mean over the last two frames [N]; null where there is none to say. */
+  /** Net force on a MAT along x, y and z, the mean over `forceSpanS` [N]; null where there is none to say. */
   forceOn(mat: number): number[] | null {
     return this.forces.of(mat);
+  }
+
+  get forceSpanS(): number {
+    return this.forces.spanS;
   }
 
   toggleGround(): void {

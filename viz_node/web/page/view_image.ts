@@ -68,9 +68,12 @@ function drawMark(pen: CanvasRenderingContext2D, mark: LegendEntry['mark'], { x,
   else if (mark === 'link dashed') [-7, 2].forEach((left) => pen.rect(x + left, y - 1.5, 5, 3));
   else if (mark === 'link dotted') [-7, -2, 3].forEach((left) => pen.rect(x + left, y - 1.5, 2, 3));
   else if (mark === 'fixed-point' || mark === 'surface') pen.rect(x - 4, y - 4, 8, 8);
-  else pen.arc(x, y, mark === 'handle' ? 6 : 4.5, 0, 2 * Math.PI);
-  if (mark === 'handle' || mark === 'fixed-point') pen.stroke();
+  else if (mark === 'key') pen.rect(x - 3.5, y, 7, 6);
+  else pen.arc(x, y, mark === 'handle' || mark === 'ring' ? 6 : 4.5, 0, 2 * Math.PI);
+  if (mark === 'ring') pen.lineWidth = 3;
+  if (mark === 'handle' || mark === 'ring' || mark === 'fixed-point') pen.stroke();
   else pen.fill();
+  if (mark === 'key') pen.strokeRect(x - 3.5, y - 6, 7, 12);
 }
 
 function writeScale(pen: CanvasRenderingContext2D, y: number, scale: Scale, palette: Palette): void {

@@ -28,7 +28,7 @@ export interface Viz {
   signal(name: string): number | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
   position(index: number): number[] | null;
-  /** Net force on MAT `index` along x, y and z, the mean over two frames [N]; null where there is none to say. */
+  /** Net force on MAT `index` along x, y and z, the mean over the last frames [N]; null where there is none to say. */
   force(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } | null;
