@@ -37,11 +37,6 @@ bool has_address(const std::vector<HostInterface>& interfaces, const std::string
                      [&](const HostInterface& own) { return own.address == address; });
 }
 
-/// Debian gives the name of a host itself an address of loopback: 127.0.1.1.
-bool is_loopback(const std::string& address) {
-  return address.starts_with("127.");
-}
-
 /// The IPv4 address of a host; nothing after a problem.
 std::optional<std::string> address_of(const config::PlacedText& host, config::Problems& problems) {
   if (config::is_ipv4(host.text)) return host.text;
@@ -145,7 +140,7 @@ dds::Network network_of(const config::Launch& launch, config::Problems& problems
   bool is_known = true;  // every host
   const auto resolve = [&](const config::PlacedText& host) {
     const std::optional<std::string> address = address_of(host, problems);
-    if (address && first == nullptr && !is_loopback(*address)) {
+    if (address && first == nullptr && !dds::is_loopback(*address)) {
       first = &host;
       first_address = *address;
     }
@@ -154,7 +149,7 @@ dds::Network network_of(const config::Launch& launch, config::Problems& problems
   for (const config::PlacedText& peer : section.peers) {
     const std::string address = resolve(peer);
     is_known = is_known && !address.empty();
-    if (!address.empty() && !is_loopback(address)) network.peers.push_back(address);
+    if (!address.empty() && !dds::is_loopback(address)) network.peers.push_back(address);
   }
   const std::vector<HostInterface> interfaces = host_interfaces();
   if (section.server) {
@@ -162,7 +157,7 @@ dds::Network network_of(const config::Launch& launch, config::Problems& problems
     // It reaches programs of its own host over loopback, where a session on a network has no
     // socket.
     is_known = is_known && !network.server.empty();
-    if (is_loopback(network.server) || has_address(interfaces, network.server))
+    if (dds::is_loopback(network.server) || has_address(interfaces, network.server))
       problems.error(section.server->place,
                      "the discovery server must not run on a host of the session, and " +
                          network.server + " is an address of this one",

@@ -3,9 +3,15 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cordis::dds {
+
+/// True for an IPv4 address of loopback, 127.0.0.0/8: Debian gives the name of a host 127.0.1.1.
+inline bool is_loopback(std::string_view address) noexcept {
+  return address.starts_with("127.");
+}
 
 /// The network of a participant. As it is made: this host alone, on loopback.
 struct Network {
@@ -18,7 +24,7 @@ struct Network {
   bool operator==(const Network&) const = default;
 
   /// True if no datagram leaves this host, and none comes from outside.
-  bool is_loopback() const noexcept { return address.starts_with("127."); }
+  bool is_loopback() const noexcept { return dds::is_loopback(address); }
 };
 
 }  // namespace cordis::dds

@@ -12,6 +12,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include "node/dds/network.h"
 #include "node/dds/udp_address.h"
 
 namespace cordis::dds {
@@ -87,7 +88,7 @@ bool ParticipantPorts::try_to_take(int domain, const std::string& address, int i
 
 ParticipantPorts::ParticipantPorts(int domain, const std::string& address, bool observes) {
   // A participant with a higher number would be looked for by no other host.
-  const int count = first_observer(address == "127.0.0.1");
+  const int count = first_observer(is_loopback(address));
   for (int index = count; observes && index < count + kMaxObservers; ++index) {
     if (try_to_take(domain, address, index)) return;
   }

@@ -269,6 +269,16 @@ TEST(Participant, ThatObservesTakesAPortOfItsOwnWhereThereIsOne) {
       << "those of observers are not for others";
 }
 
+TEST(Participant, HasTheSamePortsAtEveryAddressOfLoopback) {
+  const int domain = test::own_domain();
+  const Network second{.address = "127.0.0.2"};
+  ASSERT_TRUE(second.is_loopback());
+
+  const ParticipantPorts observer(domain, second.address, true);
+
+  EXPECT_TRUE(is_of_observer(observer.discovery(), domain, second.is_loopback()));
+}
+
 /// A loop takes its samples itself, out of the socket that its participant has at that moment.
 TEST(Participant, ThatALoopWaitsForJoinsAnew) {
   ParticipantConfig config = member("loop_anew", "here");
