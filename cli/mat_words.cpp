@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "cli/command_line.h"
+#include "node/assert.h"
 #include "node/config/nearest_word.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/scene/selection.h"
 
 namespace cordis::cli {

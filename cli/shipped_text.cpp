@@ -5,8 +5,8 @@
 
 #include "cli/command_line.h"
 #include "cli/programs.h"
+#include "node/assert.h"
 #include "node/config/nearest_word.h"
-#include "sim_node/engine/core/assert.h"
 
 namespace cordis::cli {
 

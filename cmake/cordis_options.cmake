@@ -28,7 +28,7 @@ if(CORDIS_WERROR)
   target_compile_options(cordis_options INTERFACE -Werror)
 endif()
 
-# Preconditions are checked in debug and sanitizer builds (sim_node/engine/core/assert.h), those of the
+# Preconditions are checked in debug and sanitizer builds (node/assert.h), those of the
 # standard library too.
 if(CORDIS_SANITIZE OR CMAKE_BUILD_TYPE STREQUAL "Debug")
   target_compile_definitions(cordis_options INTERFACE CORDIS_ASSERTIONS _GLIBCXX_ASSERTIONS)

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "node/assert.h"
+
 namespace cordis::device {
 
 ForceGuard::ForceGuard(const ForceGuardSettings& settings)
@@ -82,6 +84,7 @@ const AxisValues& ForceGuard::tick_again(double age_s, double share, double sinc
 }
 
 void ForceGuard::change(double age_s, double share, double since_s) noexcept {
+  CORDIS_ASSERT(age_s >= 0.0 && share >= 0.0 && share <= 1.0 && since_s >= 0.0);
   // What can still be brought to 0 at the slew rate before the watchdog bites.
   const double fading_n = settings_.slew_n_per_s * (settings_.watchdog_s - age_s);
   const double limit_n = std::min(settings_.limit_n, fading_n);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "node/assert.h"
+
 namespace cordis::device {
 
 PositionGuard::PositionGuard(const PositionGuardSettings& settings) : settings_(settings) {
@@ -52,6 +54,7 @@ const AxisValues& PositionGuard::tick_again(double age_s, double since_s) noexce
 }
 
 void PositionGuard::move(double since_s) noexcept {
+  CORDIS_ASSERT(since_s >= 0.0);
   const double grown_s = static_cast<double>(ticks_alive_) * settings_.period_s;
   const double share = grown_s < settings_.ramp_s ? grown_s / settings_.ramp_s : 1.0;
   const double speed_m_per_s = share * settings_.speed_m_per_s;

@@ -9,6 +9,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include "node/assert.h"
 #include "node/processor_time.h"
 #include "node/time.h"
 
@@ -27,7 +28,9 @@ RealtimeGrant make_realtime(int priority) noexcept {
   return grant;
 }
 
-PacedLoop::PacedLoop(double rate_hz, double phase) noexcept : rate_hz_(rate_hz), phase_(phase) {}
+PacedLoop::PacedLoop(double rate_hz, double phase) noexcept : rate_hz_(rate_hz), phase_(phase) {
+  CORDIS_ASSERT(rate_hz > 0.0 && phase >= 0.0 && phase <= 1.0);
+}
 
 std::int64_t PacedLoop::deadline(std::int64_t index) const noexcept {
   return std::llround((static_cast<double>(index) + phase_) * 1e9 / rate_hz_);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/assert.h"
+
 namespace cordis::node {
 namespace {
 
@@ -19,6 +21,7 @@ PeriodGrid::PeriodGrid(double rate_hz, std::int64_t now_nsec) noexcept
       index_(static_cast<std::int64_t>(
           std::floor(static_cast<double>(now_nsec) / period_nsec_ - kEnd))),
       reserve_(kReserve) {
+  CORDIS_ASSERT(rate_hz > 0.0 && now_nsec >= 0);
   ++index_;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 
 /// Lets frames through at a rate, whatever rate they come at.
@@ -13,7 +15,9 @@ namespace cordis::viz {
 class FramePace {
  public:
   explicit FramePace(double rate_hz) noexcept
-      : period_nsec_(static_cast<std::int64_t>(1e9 / rate_hz)) {}
+      : period_nsec_(static_cast<std::int64_t>(1e9 / rate_hz)) {
+    CORDIS_ASSERT(rate_hz > 0.0);
+  }
 
   bool lets_through(std::int64_t now_nsec) noexcept {
     if (due_nsec_ == 0) due_nsec_ = now_nsec;

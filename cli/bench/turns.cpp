@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "node/assert.h"
 #include "node/processor_time.h"
 
 namespace cordis::cli {
@@ -29,6 +30,7 @@ std::uint64_t calls_per_turn(const std::function<void()>& work) {
 }  // namespace
 
 std::vector<double> times_in_turns(const std::vector<std::function<void()>>& work, int rounds) {
+  CORDIS_ASSERT(rounds > 0);
   std::vector<std::uint64_t> calls;
   for (const auto& one : work) calls.push_back(calls_per_turn(one));
   std::vector<std::vector<double>> times(work.size());

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "node/assert.h"
 #include "node/config/launch.h"
 #include "node/config/problem.h"
 #include "sim_node/checks/device_check.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_selection.h"
 #include "sim_node/scene/naming.h"

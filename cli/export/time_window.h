@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "node/assert.h"
+
 namespace cordis::cli {
 
 /// The steps behind a start, up to an end that belongs to them.
@@ -16,7 +18,9 @@ class TimeWindow {
       : first_(static_cast<std::uint64_t>(std::llround(start_s * step_rate_hz)) + 1),
         last_(duration_s > 0.0
                   ? static_cast<std::uint64_t>(std::llround((start_s + duration_s) * step_rate_hz))
-                  : std::numeric_limits<std::uint64_t>::max()) {}
+                  : std::numeric_limits<std::uint64_t>::max()) {
+    CORDIS_ASSERT(start_s >= 0.0);
+  }
 
   bool has(std::uint64_t step) const noexcept { return step >= first_ && step <= last_; }
   std::uint64_t first() const noexcept { return first_; }  ///< the first step

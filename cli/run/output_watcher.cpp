@@ -1,7 +1,7 @@
 // cli/run/output_watcher.cpp
 #include "cli/run/output_watcher.h"
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::cli {
 

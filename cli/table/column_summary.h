@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "node/assert.h"
+
 namespace cordis::cli {
 
 /// Least, largest, mean and root mean square of the finite values of a column, and the last value.
@@ -34,6 +36,7 @@ class ColumnSummary {
 
   /// Precondition: count() > 0.
   nlohmann::ordered_json json(const std::string& unit) const {
+    CORDIS_ASSERT(count_ > 0);
     return {{"unit", unit},
             {"least", least()},
             {"largest", largest()},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cli/command_line.h"
+#include "node/assert.h"
 
 namespace cordis::cli {
 
@@ -29,6 +30,7 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+  CORDIS_ASSERT(file_ != stdout && offset + bytes.size() <= size_);
   if (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0) fail();
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
   if (fseeko(file_, 0, SEEK_END) != 0) fail();

@@ -21,6 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "node/assert.h"
 #include "node/time.h"
 
 namespace cordis::device {
@@ -144,6 +145,7 @@ class Guardian::Life {
 };
 
 Guardian::Guardian(std::chrono::nanoseconds stall_limit) : stall_limit_(stall_limit) {
+  CORDIS_ASSERT(stall_limit.count() > 0);
   void* const memory =
       mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory != MAP_FAILED) shared_ = new (memory) Shared;

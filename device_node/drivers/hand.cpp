@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "node/assert.h"
+
 namespace cordis::device {
 
 Hand::Hand(const HandSettings& settings, Trajectory target)
@@ -27,6 +29,7 @@ void Hand::place(double position_m) noexcept {
 }
 
 void Hand::follow(double target_m, double target_m_per_s, double grip) noexcept {
+  CORDIS_ASSERT(grip >= 0.0 && grip <= 1.0);
   followed_ = {target_m, target_m_per_s};
   grip_ = grip;
 }

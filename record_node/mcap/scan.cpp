@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "node/assert.h"
 #include "record_node/mcap/byte_reader.h"
 #include "record_node/mcap/chunk_contents.h"
 #include "record_node/mcap/stored_summary.h"
@@ -495,6 +496,7 @@ bool is_mcap(std::span<const std::byte> bytes) noexcept {
 }
 
 Scan scan(std::span<const std::byte> bytes) {
+  CORDIS_ASSERT(is_mcap(bytes));
   return Scanner(bytes).run();
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::sim {
 namespace {

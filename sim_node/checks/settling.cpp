@@ -1,9 +1,9 @@
 // sim_node/checks/settling.cpp
 #include "sim_node/checks/settling.h"
 
+#include "node/assert.h"
 #include "node/config/count_text.h"
 #include "sim_node/checks/short_text.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/settle.h"
 #include "sim_node/scene/naming.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
+#include "node/assert.h"
 #include "sim_node/checks/short_text.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/scene/naming.h"

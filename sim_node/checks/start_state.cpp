@@ -8,9 +8,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "node/assert.h"
 #include "node/config/mapping_reader.h"
 #include "node/config/yaml_reader.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/run/tick_division.h"

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "node/assert.h"
+
 namespace cordis::sim {
 
 /// The delays of the newest answers to one process of a device: a histogram of two windows of
@@ -63,7 +65,9 @@ class AnswerDelays {
   static constexpr double kGivenUpPeriods = 6.0;
   static constexpr std::int64_t kSilentNsec = 2'000'000'000;  ///< a process so silent is not there
   /// @param quantile  the share of the answers that come within the delay, (0, 1]
-  explicit AnswerDelays(double quantile = kQuantile) noexcept : quantile_(quantile) {}
+  explicit AnswerDelays(double quantile = kQuantile) noexcept : quantile_(quantile) {
+    CORDIS_ASSERT(quantile > 0.0 && quantile <= 1.0);
+  }
 
   /// What a sample says of the answers.
   struct Report {

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 
+#include "node/assert.h"
+
 namespace cordis::sim {
 
 void DelayEnergyObserver::enter(double made_j, double uncertainty_j, double taken_j,
                                 double moved_j) noexcept {
+  CORDIS_ASSERT(!(uncertainty_j < 0.0));
   // A law that is no potential may give back what it took, and take it again: that counts once.
   const double newly_taken = std::max(taken_j - taken_, 0.0);
   taken_ += newly_taken;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "node/assert.h"
 #include "sim_node/checks/port_body.h"
-#include "sim_node/engine/core/assert.h"
 
 namespace cordis::sim {
 
@@ -163,6 +163,7 @@ void DeviceExchange::begin_tick() noexcept {
 }
 
 void DeviceExchange::play(engine::World& world, int number, double share) noexcept {
+  CORDIS_ASSERT(number >= 1 && share > 0.0 && share <= 1.0);
   for (std::size_t p = 0; p < ports_.size(); ++p) {
     const scene::Port& port = ports_[p];
     engine::Vec3 value = role_ == Role::kMass ? port.rest : engine::Vec3(engine::Vec3::Zero());

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/core/vector_width.h"
 #include "sim_node/engine/idle_state.h"
 
@@ -60,6 +60,7 @@ ConnectedComponents::ConnectedComponents(const NetworkDescription& network,
 }
 
 void ConnectedComponents::keep_near(double distance) {
+  CORDIS_ASSERT(distance > 0.0);
   const std::size_t members = mat_.size();
   const std::size_t all = across_ ? count_p_ * (members - count_p_) : members * (members - 1) / 2;
   kept_.emplace(count_p_, members - count_p_, dimension_, distance,
@@ -68,6 +69,7 @@ void ConnectedComponents::keep_near(double distance) {
 }
 
 std::size_t ConnectedComponents::find_near(const Columns& positions, double distance) noexcept {
+  CORDIS_ASSERT(distance > 0.0);
   begin();
   for (std::size_t m = 0; m < mat_.size(); ++m) {
     std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/cell_grid.h"
 #include "sim_node/engine/pairs/neighbour_list.h"

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::engine {

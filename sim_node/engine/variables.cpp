@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/core/float_mode.h"
 
 namespace cordis::engine {

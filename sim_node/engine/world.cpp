@@ -5,8 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/archive.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/core/float_mode.h"
 #include "sim_node/engine/core/state_hash.h"
 #include "sim_node/engine/integrators/world_state.h"

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "node/assert.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate_trial.h"
@@ -65,6 +66,7 @@ double cost_of_a_step(engine::NetworkDescription network, const RateSelection& s
 RateSelection select_rate(const engine::NetworkDescription& network, const AccuracyTarget& target,
                           double gesture_rate_hz, const std::vector<std::string>& integrators,
                           bool has_ports) {
+  CORDIS_ASSERT(!integrators.empty());
   std::optional<RateSelection> best;
   const auto cost = [&network](const RateSelection& selection) {
     return selection.rate_hz * cost_of_a_step(network, selection);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/assert.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -33,6 +35,7 @@ bool is_multiple(double value, double base) {
 }  // namespace
 
 RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options) {
+  CORDIS_ASSERT(limit_hz >= 0.0);
   constexpr double kLowest = 0.35;  // of the limit, half of the lowest rate
   constexpr double kNoLimit = 0.1;  // of the scene's own rate, likewise
   double base = round_below(limit_hz > 0.0 ? kLowest * limit_hz : kNoLimit * options.own_hz);

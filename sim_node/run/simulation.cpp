@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <utility>
 
+#include "node/assert.h"
 #include "node/config/count_text.h"
 #include "sim_node/checks/stability_check.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::sim {
 

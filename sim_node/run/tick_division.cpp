@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::sim {
 
 TickDivision::TickDivision(double step_rate_hz, double gesture_rate_hz) {
-  CORDIS_ASSERT(gesture_rate_hz > 0.0 && step_rate_hz >= 0.5 * gesture_rate_hz);
+  CORDIS_ASSERT(gesture_rate_hz > 0.0 && step_rate_hz > 0.0);
   constexpr double kNear = 1e-13;
   constexpr std::int64_t kLargestDenominator = 1'000'000'000;
   const double ratio = step_rate_hz / gesture_rate_hz;
@@ -33,6 +33,7 @@ TickDivision::TickDivision(double step_rate_hz, double gesture_rate_hz) {
     rest = 1.0 / (rest - whole);
     if (!(rest < static_cast<double>(kLargestDenominator))) break;
   }
+  CORDIS_ASSERT(numerator >= denominator);
   numerator_ = numerator;
   denominator_ = denominator;
 }

@@ -14,7 +14,7 @@ namespace cordis::sim {
 class TickDivision {
  public:
   /// The ratio of the rates is taken as the simplest fraction within 1e-13 of it.
-  /// Precondition: step_rate_hz >= gesture_rate_hz > 0.
+  /// Precondition: step_rate_hz >= gesture_rate_hz > 0, to within that.
   TickDivision(double step_rate_hz, double gesture_rate_hz);
 
   /// Steps of the present tick.

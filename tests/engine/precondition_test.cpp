@@ -45,6 +45,10 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
   StateTable table(machines, 1e-3);
   StateMachine of_three_states;
   of_three_states.states.resize(3);
+  StateMachine machine_without_end;  // an exit to a state that it lacks
+  machine_without_end.states.resize(2);
+  machine_without_end.exits.resize(1);
+  machine_without_end.exits[0].target = 2;
   CellGrid grid(4, 3);
   PairStates pairs(2, 4, 1);
   NetworkDescription plane = small_network();
@@ -82,6 +86,11 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"state_machines", [&] { table.replace(1, of_three_states); }},
       {"isfinite", [&] { grid.around(nowhere, 0); }},
       {"slot_count_", [&] { pairs.old_memory(0, 1); }},
+      {"all_pass", [&] { table.replace(0, machine_without_end); }},
+      {"all_pass", [&] { const StateTable bad({machine_without_end}, 1e-3); }},
+      {"dt > 0", [&] { const StateTable bad({}, 0.0); }},
+      {"has_content", [] { elastic_tension(Table(), {}); }},
+      {"distance > 0", [&] { components.find_near(world.positions(), 0.0); }},
       {"refusal_of", [&] { const ModalBlock block(plane); }},
   };
   for (const Misuse& misuse : misuses) {

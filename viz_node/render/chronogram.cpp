@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "node/assert.h"
 #include "viz_node/render/number_text.h"
 #include "viz_node/render/scene_words.h"
 
@@ -49,6 +50,7 @@ Chronogram::Chronogram(const msg::SceneDescription& description,
       painter_(description, options.theme),
       preset_(options.view.value_or(painter_.first_view())),
       unit_(options.width / 1200.0) {
+  CORDIS_ASSERT(!frames_.empty());
   painter_.colour_by(options.colour_by);
   painter_.start(frames_.front());
   box_ = painter_.bounds(frames_.front());

@@ -5,13 +5,17 @@
 
 #include <png.h>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 Image::Image(int width, int height, const Colour& colour)
     : width_(width), height_(height), bytes_(3 * static_cast<std::size_t>(width) * height) {
+  CORDIS_ASSERT(width > 0 && height > 0);
   fill(colour);
 }
 
 Colour Image::at(int x, int y) const noexcept {
+  CORDIS_ASSERT(x >= 0 && x < width_ && y >= 0 && y < height_);
   const std::uint8_t* pixel = bytes_.data() + 3 * (static_cast<std::size_t>(y) * width_ + x);
   return {pixel[0], pixel[1], pixel[2]};
 }

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 namespace {
 
@@ -39,6 +41,7 @@ std::string short_text(double value, int decimals) {
 }
 
 double round_length(double length) noexcept {
+  CORDIS_ASSERT(length > 0.0 && std::isfinite(length));
   double decade = 1.0;
   while (decade > length) decade /= 10.0;
   while (10.0 * decade <= length) decade *= 10.0;

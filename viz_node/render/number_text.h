@@ -20,7 +20,8 @@ std::string with_unit(double value, const std::string& unit);
 /// The shortest text of a number with at most so many decimals: "0.5", "12".
 std::string short_text(double value, int decimals);
 
-/// The largest of 1, 2, 5, 10, 20 ... that is not above `length`. Precondition: length > 0.
+/// The largest of 1, 2, 5, 10, 20 ... that is not above `length`. Precondition: length is
+/// finite and > 0.
 double round_length(double length) noexcept;
 
 }  // namespace cordis::viz

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/assert.h"
 #include "viz_node/render/number_text.h"
 
 namespace cordis::viz {
@@ -188,6 +189,7 @@ void ScenePainter::start(const msg::SceneFrame& frame) {
 }
 
 Box ScenePainter::bounds(const msg::SceneFrame& frame, double outliers) const {
+  CORDIS_ASSERT(outliers >= 0.0 && outliers <= 0.5);
   return bounds_with(surfaces_, matter_bounds(frame, outliers), space_);
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "node/assert.h"
 #include "viz_node/render/number_text.h"
 #include "viz_node/render/scene_painter.h"
 #include "viz_node/render/text_shape.h"
@@ -32,6 +33,7 @@ std::string axis_text(double value) {
 }  // namespace
 
 std::vector<double> axis_marks(double low, double high, int count) {
+  CORDIS_ASSERT(low < high && count > 0);
   const double step = round_length((high - low) / count);
   std::vector<double> marks;
   for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1.0)
@@ -46,6 +48,8 @@ SignalPlot::SignalPlot(std::vector<double> time_s, std::vector<Curve> curves,
       options_(options),
       palette_(palette_of(options.theme)),
       unit_(options.width / 900.0) {
+  CORDIS_ASSERT(time_s_.size() >= 2 && std::ranges::is_sorted(time_s_) &&
+                time_s_.front() < time_s_.back());
   for (std::size_t i = 0; i < curves_.size(); ++i) {
     const auto fits = [&](const Group& group) {
       return group.unit == curves_[i].unit && group.curves.size() < kMaxCurves;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 
 using Point = std::array<double, 3>;  ///< x, y, z [m]
@@ -31,6 +33,7 @@ inline Point cross(const Point& a, const Point& b) noexcept {
 /// The unit vector along `a`. Precondition: `a` is not zero.
 inline Point normalized(const Point& a) noexcept {
   const double length = std::sqrt(dot(a, a));
+  CORDIS_ASSERT(length > 0.0);
   return {a[0] / length, a[1] / length, a[2] / length};
 }
 

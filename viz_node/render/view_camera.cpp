@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 namespace {
 
@@ -61,6 +63,7 @@ ViewCamera::ViewCamera(ViewPreset preset, bool is_parallel, const Box& box, doub
       half_width_(0.5 * width),
       half_height_(0.5 * height),
       is_parallel_(is_parallel) {
+  CORDIS_ASSERT(width > 0.0 && height > 0.0);
   right_ = normalized(cross({0.0, 1.0, 0.0}, towards_));
   up_ = cross(towards_, right_);
   const Point size = box.size();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "node/assert.h"
+
 namespace cordis::viz {
 
 bool FlowCredit::may_send(std::uint32_t newest, std::int64_t now_nsec) const noexcept {
@@ -12,6 +14,7 @@ bool FlowCredit::may_send(std::uint32_t newest, std::int64_t now_nsec) const noe
 
 void FlowCredit::sent(std::uint32_t sequence, std::int64_t taken_nsec,
                       std::int64_t now_nsec) noexcept {
+  CORDIS_ASSERT(may_send(sequence, now_nsec));
   if (count_ == kMaxUnacknowledged) forget_oldest(1);
   if (last_sent_ != 0) dropped_ += sequence - last_sent_ - 1;
   last_sent_ = sequence;

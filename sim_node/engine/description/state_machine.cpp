@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 
 namespace cordis::engine {

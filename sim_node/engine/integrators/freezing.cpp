@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/integrators/world_state.h"
 
 namespace cordis::engine {

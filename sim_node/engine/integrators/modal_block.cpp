@@ -7,7 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/links/maxwell_links.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/links/link_runs.h"
 
 namespace cordis::engine {

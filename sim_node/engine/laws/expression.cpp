@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/laws/quadrature.h"
 #include "sim_node/engine/laws/scalar_tension.h"

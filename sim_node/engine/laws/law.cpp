@@ -3,10 +3,23 @@
 
 #include <type_traits>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/laws/scalar_tension.h"
 
 namespace cordis::engine {
+namespace {
+
+/// False for a table or an expression that check_elasticity would refuse because it holds nothing.
+bool has_content(const Law& law) noexcept {
+  if (const auto* table = std::get_if<Table>(&law)) {
+    return !table->argument().empty() && table->argument().size() == table->value().size();
+  }
+  const auto* expression = std::get_if<Expression>(&law);
+  return expression == nullptr || !expression->program.empty();
+}
+
+}  // namespace
 
 LawArgument argument_of(const Law& law) noexcept {
   return std::visit([](const auto& alternative) { return alternative.kArgument; }, law);
@@ -27,12 +40,14 @@ void check_dissipation(const Law& law, const std::string& name) {
 }
 
 double elastic_tension(const Law& law, const LawPoint& link) noexcept {
+  CORDIS_ASSERT(has_content(law));
   return std::visit(
       [&](const auto& alternative) { return scalar_tension(alternative, link, link.elongation); },
       law);
 }
 
 double viscous_tension(const Law& law, const LawPoint& link) noexcept {
+  CORDIS_ASSERT(has_content(law));
   return std::visit(
       [&](const auto& alternative) { return scalar_tension(alternative, link, link.speed); }, law);
 }

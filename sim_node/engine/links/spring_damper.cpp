@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/links/elongation_increment.h"
 
 namespace cordis::engine {

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/laws/quadrature.h"
 #include "sim_node/engine/laws/scalar_tension.h"
 
@@ -17,6 +18,19 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 static_assert(static_cast<int>(RestCode::kKeep) == static_cast<int>(RestRule::kKeep) &&
               static_cast<int>(RestCode::kHere) == static_cast<int>(RestRule::kHere) &&
               static_cast<int>(RestCode::kExpression) == static_cast<int>(RestRule::kExpression));
+
+/// True if check_state_machine has nothing against any of them.
+bool all_pass(const std::vector<StateMachine>& state_machines,
+              std::size_t variable_count) noexcept {
+  try {
+    for (const StateMachine& state_machine : state_machines) {
+      check_state_machine(state_machine, "state machine", variable_count);
+    }
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  return true;
+}
 
 ProgramTerm ready(const Program& program, const double* variables = nullptr) {
   return {program.code.data(), program.code.size(), variables};
@@ -133,6 +147,7 @@ void StateTable::Content::record_needs(const Program& program) {
 StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool whole_steps,
                        std::size_t variable_count)
     : content_(std::make_unique<Content>()) {
+  CORDIS_ASSERT(dt > 0.0 && all_pass(state_machines, variable_count));
   content_->variables.resize(variable_count, 0.0);
   content_->state_machines = std::move(state_machines);
   content_->dt = dt;
@@ -236,7 +251,8 @@ Quantity StateTable::triggered(StateIndex from, std::uint32_t exit) const noexce
 
 void StateTable::replace(std::uint32_t index, const StateMachine& state_machine) {
   CORDIS_ASSERT(index < content_->state_machines.size() &&
-                state_machine.states.size() == content_->state_machines[index].states.size());
+                state_machine.states.size() == content_->state_machines[index].states.size() &&
+                all_pass({state_machine}, content_->variables.size()));
   content_->state_machines[index] = state_machine;
   content_->build();
 }

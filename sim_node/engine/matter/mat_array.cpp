@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::engine {
 

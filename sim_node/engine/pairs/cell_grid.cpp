@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::engine {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/pairs/restored_rows.h"
 
 namespace cordis::engine {

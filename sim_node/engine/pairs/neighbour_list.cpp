@@ -5,6 +5,8 @@
 #include <cmath>
 #include <new>
 
+#include "node/assert.h"
+
 namespace cordis::engine {
 namespace {
 
@@ -60,6 +62,7 @@ NeighbourList::NeighbourList(std::size_t count_p, std::size_t count_q, int dimen
       fill_(count_p, 0),
       found_begin_(count_p + count_q, 0),
       found_(capacity_ + count_p + kPairBatch, 0U) {
+  CORDIS_ASSERT(range > 0.0);
   used_.skin = kFirstSkin * range;
 }
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/links/state_kernel.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/archive.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/links/state_table.h"
 
 namespace cordis::engine {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/set_pairs.h"
 

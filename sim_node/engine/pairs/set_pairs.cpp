@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::engine {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy_account.h"

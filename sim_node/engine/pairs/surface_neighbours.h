@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 

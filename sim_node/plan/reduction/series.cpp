@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "node/assert.h"
 #include "node/config/count_text.h"
-#include "sim_node/engine/core/assert.h"
 #include "sim_node/plan/reduction/held.h"
 #include "sim_node/plan/reduction/take_out.h"
 

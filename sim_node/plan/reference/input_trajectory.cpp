@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "node/assert.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -16,6 +18,7 @@ const Vec3& entry(const Channel& channel, std::size_t index) {
 }  // namespace
 
 Vec3 value_at(const InputTrajectory& trajectory, const Channel& channel, double time) {
+  CORDIS_ASSERT(time >= 0.0);
   constexpr double kRounding = 1e-9;  // of a period
   const double periods = time / trajectory.period + kRounding;
   const double whole = std::floor(periods);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "node/assert.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 
 namespace cordis::plan {
@@ -82,6 +83,7 @@ Roots roots_of(IntegratorKind integrator, double stiffness, double viscosity) {
 
 OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
                                  IntegratorKind integrator) {
+  CORDIS_ASSERT(angular_frequency > 0.0 && viscosity >= 0.0);
   const double rate = 0.5 * viscosity;  // of decay
   const double square = angular_frequency * angular_frequency - rate * rate;
   const Roots roots =

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "node/assert.h"
 #include "sim_node/engine/description/partner_share.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/surface_bound.h"
@@ -203,6 +204,7 @@ double max_neighbours(int dimension, double own, double other) {
 /// angle are disjoint; 12 up to q = 1.0456 (the strong thirteen spheres problem, Musin and Tarasov
 /// 2012).
 double packing_bound(int dimension, double reach, double spacing) {
+  CORDIS_ASSERT(0.0 < spacing && spacing <= reach);
   const double q = reach / spacing;
   if (dimension == 1) return 2.0 * std::floor(q + kRounding);
   constexpr double kPi = std::numbers::pi;

@@ -8,7 +8,7 @@
 #include <queue>
 #include <vector>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 
 namespace cordis::plan {
 namespace {

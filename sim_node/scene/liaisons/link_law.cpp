@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-#include "sim_node/engine/core/assert.h"
+#include "node/assert.h"
 #include "sim_node/scene/language/formula.h"
 #include "sim_node/scene/liaisons/liaison_reader.h"
 

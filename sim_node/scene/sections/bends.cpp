@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "node/assert.h"
+
 namespace cordis::scene {
 
 using config::Value;
@@ -129,6 +131,7 @@ bool add_bend(Assembly& assembly, const BendLaw& law, const Triple& mats,
 }  // namespace
 
 void read_bends(Assembly& assembly, LinkEntry& entry) {
+  CORDIS_ASSERT(entry.law && entry.law->bend);
   config::MappingReader& reader = entry.reader;
   for (const char* other : {"within", "between_sets"}) {
     if (reader.optional_value(other).exists()) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
@@ -96,6 +97,7 @@ void add_fields(const WorldFields& fields, Scene& scene, config::Problems& probl
     if (gravity && !mat.weightless) drives.push_back(push_with(i, *gravity, mat.mass));
     if (flow && viscosity > 0.0) drives.push_back(push_with(i, *flow, viscosity));
   }
+  CORDIS_ASSERT(written == network.drives.end());  // each is of a MAT that is there, in their order
   network.drives = std::move(drives);
 }
 
