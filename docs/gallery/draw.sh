@@ -20,6 +20,7 @@ draw material_skin --frames 8 --every 400ms
 # Its photographs 2 to 6.
 draw bodies_meeting --frames 6 --every 700ms
 draw collage_and_rupture --frames 6 --every 300ms
+draw all_types_together --from 600ms --frames 6 --every 300ms
 draw stirred_box --from 1s --frames 4 --every 1200ms
 
 # What README opens with.
