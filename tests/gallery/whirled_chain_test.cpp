@@ -31,14 +31,14 @@ TEST(WhirledChain, HangsInItsSecondMode) {
   const Place tip = place_of(session, "rods[15].ends", 1);
   EXPECT_GT(middle.away, 0.02);
   EXPECT_GT(tip.away, 0.02);
-  const engine::Vec3 at_middle = session.position("rods[8].ends", 0);
-  const engine::Vec3 at_tip = session.position("rods[15].ends", 1);
-  EXPECT_LT(at_middle.x() * at_tip.x() + at_middle.z() * at_tip.z(), 0.0);
+  const engine::Vec3 middle_place = session.position("rods[8].ends", 0);
+  const engine::Vec3 tip_place = session.position("rods[15].ends", 1);
+  EXPECT_LT(middle_place.x() * tip_place.x() + middle_place.z() * tip_place.z(), 0.0);
 
   // It turns as one body: a turn of the crank later it is where it was.
   session.play_until(30.0 + 5.0 / 1.6);
-  EXPECT_NEAR(session.position("rods[15].ends", 1).x(), at_tip.x(), 0.1 * tip.away);
-  EXPECT_NEAR(session.position("rods[15].ends", 1).z(), at_tip.z(), 0.1 * tip.away);
+  EXPECT_NEAR(session.position("rods[15].ends", 1).x(), tip_place.x(), 0.1 * tip.away);
+  EXPECT_NEAR(session.position("rods[15].ends", 1).z(), tip_place.z(), 0.1 * tip.away);
   // Each rod keeps its length: K is 1e5 times the weight of the chain over a rod.
   const double rod =
       (session.position("rods[3].ends", 1) - session.position("rods[3].ends", 0)).norm();
