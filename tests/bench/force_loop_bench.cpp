@@ -32,19 +32,23 @@
 #include "tests/bench/delay_chart.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/filled.h"
 
 namespace {
 
 using cordis::msg::NodeStatus;
+using cordis::test::filled;
 using cordis::test::LiveSession;
 using cordis::test::StatusWatch;
 using namespace std::chrono_literals;
 
 std::string nodes(const std::string& extra_of_sim, bool view) {
   const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
-  return "  sim: {node: sim_node, scene: '" + configs + "scenes/plucked_string.yaml'" +
-         extra_of_sim + "}\n" + "  keyboard: {node: device_node, device: '" + configs +
-         "devices/keyboard.yaml'}\n" + (view ? "  view: {node: viz_node, port: 0}\n" : "");
+  return filled(R"(  sim: {node: sim_node, scene: '<configs>scenes/plucked_string.yaml'<extra>}
+  keyboard: {node: device_node, device: '<configs>devices/keyboard.yaml'}
+)",
+                {{"configs", configs}, {"extra", extra_of_sim}}) +
+         (view ? "  view: {node: viz_node, port: 0}\n" : "");
 }
 
 void print_memory(const NodeStatus& status) {
@@ -200,18 +204,24 @@ std::string text_of(const char* format, int first, int second) {
 std::optional<Measured> realtime_run(int rate_hz, std::chrono::seconds duration,
                                      const cordis::test::Build& build, bool keeps_ages = false) {
   LiveSession session("realtime",
-                      "  sim: {node: sim_node, scene: scene.yaml}\n"
-                      "  keyboard: {node: device_node, device: key.yaml}\n",
+                      R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+)",
                       "bench", build);
   const std::filesystem::path trace = session.folder() / "trace.csv";
   session.add_file("scene.yaml", text_of(kKeyScene, 4 * rate_hz, rate_hz));
-  session.add_file(
-      "key.yaml",
-      "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nrate_hz: " + std::to_string(rate_hz) +
-          "\ndriver: mock\nmock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}\n" +
-          (keeps_ages ? "trace: {file: " + trace.string() +
-                            ", last_s: " + std::to_string(duration.count()) + "}\n"
-                      : ""));
+  session.add_file("key.yaml", filled(R"(cordis: 1
+axes: 1
+travel_m: 0.04
+rest: top
+rate_hz: <rate_hz>
+driver: mock
+mock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}
+)",
+                                      {{"rate_hz", std::to_string(rate_hz)}}) +
+                                   (keeps_ages ? "trace: {file: " + trace.string() + ", last_s: " +
+                                                     std::to_string(duration.count()) + "}\n"
+                                               : ""));
   StatusWatch status(session.participant());
   cordis::test::ChildProcess& sim = session.start("sim_node", "sim");
   cordis::test::ChildProcess& device = session.start("device_node", "keyboard");

@@ -26,11 +26,13 @@
 
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/filled.h"
 
 namespace {
 
 using cordis::msg::NodeStatus;
 using cordis::test::ChildProcess;
+using cordis::test::filled;
 using cordis::test::LiveSession;
 using cordis::test::StatusWatch;
 using namespace std::chrono_literals;
@@ -60,14 +62,21 @@ std::string scene_text() {
 }
 
 std::string device_text() {
-  return "cordis: 1\naxes: 16\ntravel_m: 0.04\nrest: top\nrate_hz: 1000\ndriver: mock\n"
-         "mock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}\n";
+  return R"(cordis: 1
+axes: 16
+travel_m: 0.04
+rest: top
+rate_hz: 1000
+driver: mock
+mock: {hand: {moves: [{at_s: 0.5, in_s: 0.5, to_m: -0.02}]}}
+)";
 }
 
 const char* const kNodes =
-    "  sim: {node: sim_node, scene: scene.yaml}\n"
-    "  keyboard: {node: device_node, device: key.yaml}\n"
-    "  record: {node: record_node, out: take.mcap}\n";
+    R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+  record: {node: record_node, out: take.mcap}
+)";
 
 /// Processor time of the threads of a process, by the name of the thread and its number [s].
 std::map<std::string, double> processor_s(pid_t process) {
@@ -201,16 +210,16 @@ void replace(std::string& text, const std::string& old, const std::string& by) {
 /// Prints the share of a core that sim_node takes for a string that is heard.
 bool sounding_string(std::chrono::seconds duration) {
   const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
-  LiveSession session(
-      "realtime",
-      "  sim: {node: sim_node, scene: scene.yaml}\n"
-      "  hand: {node: device_node, device: '" +
-          configs +
-          "devices/two_thimbles.yaml', driver: script, script: {interpolation: linear, "
-          "repeat_s: 2, positions: [{at_s: 0, m: [0, 0, 0, 0]}, {at_s: 0.2, m: [0, "
-          "0.08, 0, 0]}, {at_s: 1, m: [0, 0.08, 0, -0.08]}, {at_s: 1.8, m: [0, 0, 0, "
-          "0]}, {at_s: 2, m: [0, 0, 0, 0]}]}}\n",
-      "bench");
+  LiveSession session("realtime",
+                      filled(R"(  sim: {node: sim_node, scene: scene.yaml}
+  hand: {node: device_node, device: '<configs>devices/two_thimbles.yaml', driver: script,
+         script: {interpolation: linear, repeat_s: 2,
+                  positions: [{at_s: 0, m: [0, 0, 0, 0]}, {at_s: 0.2, m: [0, 0.08, 0, 0]},
+                              {at_s: 1, m: [0, 0.08, 0, -0.08]}, {at_s: 1.8, m: [0, 0, 0, 0]},
+                              {at_s: 2, m: [0, 0, 0, 0]}]}}
+)",
+                             {{"configs", configs}}),
+                      "bench");
   std::string scene = text_of_file(configs + "scenes/sounding_string.yaml");
   replace(scene, "count: 102", "count: 202");
   replace(scene, "../liaisons", configs + "liaisons");

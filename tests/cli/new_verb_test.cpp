@@ -137,8 +137,11 @@ class ManyChecked : public Beginnings {
  protected:
   ManyChecked() {
     EXPECT_EQ(run({"new", "scene", folder_ / "good"}), kSuccess);
-    std::ofstream(folder_ / "bad.yaml")
-        << "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\nmater: {}\n";
+    std::ofstream(folder_ / "bad.yaml") << R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+mater: {}
+)";
   }
 };
 

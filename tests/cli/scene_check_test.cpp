@@ -15,6 +15,7 @@
 #include "cli/check/check_verb.h"
 #include "cli/exit_code.h"
 #include "tests/cli/captured_run.h"
+#include "tests/support/filled.h"
 
 namespace cordis::cli {
 namespace {
@@ -24,7 +25,10 @@ class Checked : public testing::Test {
  protected:
   ~Checked() override { std::remove(path_.c_str()); }
   void write(const std::string& rate, const std::string& more = "") {
-    std::ofstream(path_) << "cordis: 1\nname: bob\nspace: 1\nstep: {rate_hz: " << rate
+    std::ofstream(path_) << R"(cordis: 1
+name: bob
+space: 1
+step: {rate_hz: )" << rate
                          << R"(, gesture_rate_hz: 10}
 matter:
   ground: {kind: fixed, at_m: [0]}
@@ -68,21 +72,24 @@ ports:
     std::ifstream in(path_);
     std::string text{std::istreambuf_iterator<char>(in), {}};
     const std::string head = "liaisons:\n";
-    text.insert(text.find(head) + head.size(),
-                "  catch: {states: {a: {stiffness_n_per_m: " + stiffness +
-                    ", exits: [{to: b, when: elongation_m > 1}]}, b: {final: true}}}\n"
-                    "  knock: {stiffness_n_per_m: " +
-                    of_set + ", pulls: false, rest_m: 0.1, range: rest}\n");
+    text.insert(
+        text.find(head) + head.size(),
+        test::filled(
+            R"(  catch: {states: {a: {stiffness_n_per_m: <stiffness>, exits: [{to: b, when: elongation_m > 1}]},
+                   b: {final: true}}}
+  knock: {stiffness_n_per_m: <of_set>, pulls: false, rest_m: 0.1, range: rest}
+)",
+            {{"stiffness", stiffness}, {"of_set", of_set}}));
     std::ofstream(path_) << text;
   };
   soft("9000", "100");
   EXPECT_EQ(run({}), kSuccess) << error_;
-  EXPECT_NE(out_.find("set by catch (" + path_ + ":14)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("set by catch (" + path_ + ":15)"), std::string::npos) << out_;
   soft("100", "9000");
   EXPECT_EQ(run({}), kSuccess) << error_;
   EXPECT_NE(out_.find("), 3 MATs, 2 links, 1 set, 1-D\n"), std::string::npos) << out_;
-  EXPECT_NE(out_.find("set by knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
-  EXPECT_NE(out_.find("at worst: knock of sets (" + path_ + ":15)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("set by knock of sets (" + path_ + ":16)"), std::string::npos) << out_;
+  EXPECT_NE(out_.find("at worst: knock of sets (" + path_ + ":16)"), std::string::npos) << out_;
 }
 
 TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
@@ -98,9 +105,14 @@ TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
 }
 
 TEST_F(Checked, AnUnstableMediumIsRefusedAtTheMassThatItDampsTooMuch) {
-  std::ofstream(path_) << "cordis: 1\nname: medium\nspace: 1\nstep: {rate_hz: 1000}\n"
-                          "world: {viscosity_n_s_per_m: 900}\n"
-                          "matter:\n  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}\n";
+  std::ofstream(path_) << R"(cordis: 1
+name: medium
+space: 1
+step: {rate_hz: 1000}
+world: {viscosity_n_s_per_m: 900}
+matter:
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+)";
   EXPECT_EQ(run({}), kBadInput);
   EXPECT_NE(error_.find(path_ + ":7:"), std::string::npos) << error_;
   EXPECT_NE(error_.find("the viscosity of the medium at the mass bob sets the limit"),
@@ -235,10 +247,16 @@ ports:
     std::remove(device_.c_str());
   }
   void launch(const std::string& clock, const std::string& viscosity) const {
-    std::ofstream(device_) << "cordis: 1\ndriver: mock\naxes: 1\nrate_hz: 10\nmoving_mass_kg: 1\n"
-                              "viscosity_n_s_per_m: "
-                           << viscosity << "\n";
-    std::ofstream(path_) << "cordis: 1\nsession: checked\nclock: " << clock
+    std::ofstream(device_) << R"(cordis: 1
+driver: mock
+axes: 1
+rate_hz: 10
+moving_mass_kg: 1
+viscosity_n_s_per_m: )" << viscosity
+                           << "\n";
+    std::ofstream(path_) << R"(cordis: 1
+session: checked
+clock: )" << clock
                          << "\nnodes:\n  sim: {node: sim_node, scene: " << scene_
                          << "}\n  keyboard: {node: device_node, device: " << device_ << "}\n";
   }
@@ -314,8 +332,12 @@ TEST_F(CheckedLaunch, WordsChangeALaunchFileAlone) {
 }
 
 TEST_F(CheckedLaunch, WithoutASimNodeThereIsNothingToJudge) {
-  std::ofstream(path_)
-      << "cordis: 1\nsession: checked\nclock: realtime\nnodes:\n  view: {node: viz_node}\n";
+  std::ofstream(path_) << R"(cordis: 1
+session: checked
+clock: realtime
+nodes:
+  view: {node: viz_node}
+)";
   EXPECT_EQ(run({}), kFailure);
   EXPECT_NE(error_.find("has no sim_node"), std::string::npos) << error_;
 }

@@ -170,8 +170,10 @@ TEST_F(SceneViews, PlotsTheSignalsThatAreNamed) {
 
 TEST_F(SceneViews, BeginsWithTheSavedStateOfAScene) {
   const auto scene = [this](const std::string& name, const std::string& keys) {
-    std::ofstream(path(name)) << "cordis: 1\nspace: 2\nstep: {rate_hz: 4000}\n"
-                              << keys << R"(
+    std::ofstream(path(name)) << R"(cordis: 1
+space: 2
+step: {rate_hz: 4000}
+)" << keys << R"(
 matter: {stone: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, 0]}}
 signals: {x: {of: stone, quantity: position, axis: x}}
 )";

@@ -22,6 +22,7 @@
 #include "cli/simulate/row_schedule.h"
 #include "cli/simulate/simulate_verb.h"
 #include "tests/cli/captured_run.h"
+#include "tests/support/filled.h"
 
 namespace cordis::cli {
 namespace {
@@ -183,8 +184,10 @@ TEST_F(Simulate, CountsRowsFromASavedStateOn) {
 
 TEST_F(Simulate, SavesAStateInPlaceOfNothingButAState) {
   const std::string scene = put("fall.yaml", kFalling);
-  const std::string launch =
-      put("launch.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: fall.yaml}\n");
+  const std::string launch = put("launch.yaml", R"(cordis: 1
+nodes:
+  sim: {node: sim_node, scene: fall.yaml}
+)");
   const std::string state = put("old.state", "cordis_state: 1\n");
 
   EXPECT_EQ(run({launch, "--duration", "0.1s", "--save-state", scene}), kBadInput);
@@ -199,8 +202,11 @@ TEST_F(Simulate, SavesAStateInPlaceOfNothingButAState) {
 }
 
 TEST_F(Simulate, ARunThatFailsLeavesTheOldState) {
-  const std::string launch = put("d.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: '" +
-                                               put("div.yaml", kDiverging) + "', force: true}\n");
+  const std::string launch = put("d.yaml", test::filled(R"(cordis: 1
+nodes:
+  sim: {node: sim_node, scene: '<scene>', force: true}
+)",
+                                                        {{"scene", put("div.yaml", kDiverging)}}));
   put("old.state", "cordis_state: 1\n");
   const auto files = [this] {
     const std::filesystem::directory_iterator entries(folder_);
@@ -263,23 +269,28 @@ TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {
 
 TEST_F(Simulate, SaysThatADriveBringsMoreThanTheStepIsCertifiedFor) {
   const std::string head =
-      "cordis: 1\nname: x\nspace: 1\nstep: {rate_hz: 1000}\n"
-      "liaisons: {d: {stiffness_n_per_m: 100, dissipation: '0.3 * speed_m_per_s^3'}}\n";
-  const std::string pushed =
-      put("pushed.yaml", head +
-                             "matter: {wall: {kind: fixed, at_m: 0}, "
-                             "m: {kind: mass, mass_kg: 0.01, at_m: 1, driven: {force_n: 'if(time_s "
-                             "> 1e5, 200, 2)'}}}\n"
-                             "links: [{liaison: d, between: [wall, m], rest_m: 1}]\n");
+      R"(cordis: 1
+name: x
+space: 1
+step: {rate_hz: 1000}
+liaisons: {d: {stiffness_n_per_m: 100, dissipation: '0.3 * speed_m_per_s^3'}}
+)";
+  const std::string pushed = put("pushed.yaml", head +
+                                                    R"(matter:
+  wall: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 1, driven: {force_n: 'if(time_s > 1e5, 200, 2)'}}
+links: [{liaison: d, between: [wall, m], rest_m: 1}]
+)");
   ASSERT_EQ(run({pushed, "--duration", "1s", "--summary", path("p.json")}), kSuccess) << error_;
   EXPECT_EQ(nlohmann::json::parse(text_of("p.json"))["passed_bound"], "") << error_;
 
-  const std::string led = put(
-      "led.yaml", head +
-                      "matter: {wall: {kind: fixed, at_m: 0, driven: {displacement_m: "
-                      "'if(time_s < 0.3, 0, if(time_s < 0.3005, 200 * (time_s - 0.3), 0.1))'}}, "
-                      "m: {kind: mass, mass_kg: 0.01, at_m: 1}}\n"
-                      "links: [{liaison: d, between: [wall, m], rest_m: 1}]\n");
+  const std::string led = put("led.yaml", head +
+                                              R"(matter:
+  wall: {kind: fixed, at_m: 0, driven: {displacement_m: 'if(time_s < 0.3, 0,
+         if(time_s < 0.3005, 200 * (time_s - 0.3), 0.1))'}}
+  m: {kind: mass, mass_kg: 0.01, at_m: 1}
+links: [{liaison: d, between: [wall, m], rest_m: 1}]
+)");
   run({led, "--duration", "2s", "--summary", path("l.json")});
   EXPECT_THAT(error_, testing::AnyOf(HasSubstr("than its step is certified for"),
                                      HasSubstr("is no finite number any more")));
@@ -325,8 +336,11 @@ TEST_F(Simulate, WritesEventsToAFileOfTheirOwn) {
 }
 
 TEST_F(Simulate, ASceneThatDivergesKeepsItsRowsAndSaysSo) {
-  const std::string launch = put("d.yaml", "cordis: 1\nnodes:\n  sim: {node: sim_node, scene: '" +
-                                               put("div.yaml", kDiverging) + "', force: true}\n");
+  const std::string launch = put("d.yaml", test::filled(R"(cordis: 1
+nodes:
+  sim: {node: sim_node, scene: '<scene>', force: true}
+)",
+                                                        {{"scene", put("div.yaml", kDiverging)}}));
   EXPECT_EQ(run({launch, "--duration", "2s", "--csv", path("d.csv"), "--summary", path("d.json")}),
             kFailure);
   EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
@@ -368,12 +382,16 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
 }
 
 TEST_F(Simulate, CtrlCEndsASceneThatSettlesForLong) {
-  const std::string scene =
-      put("sheet.yaml",
-          "cordis: 1\nspace: 2\nstep: {rate_hz: 4000}\nworld: {gravity_m_per_s2: [0, -9.81]}\n"
-          "matter:\n  s: {kind: string, count: 30, from_m: [0, 0], to_m: [1, 0], ends: fixed, "
-          "mass_kg: 0.001, stiffness_n_per_m: 3000}\n"
-          "settle: {until_n: 1.0e-300, steps: 5000000}\n");
+  const std::string scene = put("sheet.yaml",
+                                R"(cordis: 1
+space: 2
+step: {rate_hz: 4000}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  s: {kind: string, count: 30, from_m: [0, 0], to_m: [1, 0], ends: fixed, mass_kg: 0.001,
+      stiffness_n_per_m: 3000}
+settle: {until_n: 1.0e-300, steps: 5000000}
+)");
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGINT, SIG_DFL);

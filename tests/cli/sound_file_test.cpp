@@ -19,6 +19,7 @@
 #include "cli/exit_code.h"
 #include "cli/simulate/simulate_verb.h"
 #include "tests/cli/captured_run.h"
+#include "tests/support/filled.h"
 #include "tests/support/reference_data.h"
 
 namespace cordis::cli {
@@ -87,9 +88,13 @@ constexpr double kRateOfModes = 2.0 * pi * 1000.0;  // sqrt(K / m) [rad/s]
 /// Ten masses in line between two fixed ends, the first one out of its place; the force on an end is
 /// the sound.
 std::string chain_text(double step_rate_hz) {
-  std::string text =
-      "cordis: 1\nname: chain\nspace: 1\nstep: {rate_hz: " + std::to_string(step_rate_hz) +
-      ", integrator: cordis}\nmatter:\n";
+  std::string text = test::filled(R"(cordis: 1
+name: chain
+space: 1
+step: {rate_hz: <step_rate_hz>, integrator: cordis}
+matter:
+)",
+                                  {{"step_rate_hz", std::to_string(step_rate_hz)}});
   for (int i = 0; i < 12; ++i) {
     const bool is_end = i == 0 || i == 11;
     text += "  m" + std::to_string(i) +

@@ -105,23 +105,20 @@ TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
 
   EXPECT_EQ(
       status_table({"sim", "keyboard", "view"}, board),
-      "node      rate [Hz]  wanted  overruns  lost  latency p50 [us]  p99   max  energy drift  "
-      "late ticks\n"
-      "sim          1000.0    1000        12     0                 -    -     -       1.2e-07  "
-      "machine 9, scene too slow 3, device silent 240\n"
-      "keyboard     1000.0    1000         0     3                56   98  2310             -  "
-      "none\n"
-      "view      no status was received\n"
-      "energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by "
-      "viscosity; largest K' + 2 Z' 1.75 of 4\n"
-      "integration error -0.00025 J\n"
-      "a mass of a set touched 7 others at once, certified up to 12\n"
-      "steps with more pairs in range than room, slow: 3\n"
-      "states of pairs FORGOTTEN for lack of memory: 17\n"
-      "positions and forces refused, not finite: 5\n"
-      "state hash 0123456789abcdef after 10000 steps\n"
-      "keyboard gave the hand -0.002 J, damped in 7 ticks\n"
-      "keyboard: 1.20 % of 20000 samples without an answer of their own\n");
+      R"(node      rate [Hz]  wanted  overruns  lost  latency p50 [us]  p99   max  energy drift  late ticks
+sim          1000.0    1000        12     0                 -    -     -       1.2e-07  machine 9, scene too slow 3, device silent 240
+keyboard     1000.0    1000         0     3                56   98  2310             -  none
+view      no status was received
+energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by viscosity; largest K' + 2 Z' 1.75 of 4
+integration error -0.00025 J
+a mass of a set touched 7 others at once, certified up to 12
+steps with more pairs in range than room, slow: 3
+states of pairs FORGOTTEN for lack of memory: 17
+positions and forces refused, not finite: 5
+state hash 0123456789abcdef after 10000 steps
+keyboard gave the hand -0.002 J, damped in 7 ticks
+keyboard: 1.20 % of 20000 samples without an answer of their own
+)");
 }
 
 TEST(StatusTable, ReportsCausesInTheWordsOfTheNode) {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/filled.h"
+
 namespace cordis::config {
 namespace {
 
@@ -45,7 +47,12 @@ TEST(Launch, ReadsSessionAndNodesInTheOrderOfTheFile) {
 TEST(Launch, DistinguishesASceneFromALaunchFileInOneProblem) {
   Problems problems;
 
-  static_cast<void>(load_launch_text("cordis: 1\nname: bow\nspace: 1\nmatter: {a: {}}\nlinks: []\n",
+  static_cast<void>(load_launch_text(R"(cordis: 1
+name: bow
+space: 1
+matter: {a: {}}
+links: []
+)",
                                      "bow.yaml", {}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
@@ -100,9 +107,11 @@ TEST(Launch, RequiresAllButTheViewAndStartsAgainWhatDoesNotChangeTheResult) {
 TEST(Launch, LeavesOutTheNodesOfAnotherClock) {
   for (const std::string clock : {"realtime", "lockstep", "asap"}) {
     Problems problems;
-    const Launch launch = load_launch_text("cordis: 1\nclock: " + clock +
-                                               "\nnodes: {sim: {node: sim_node}, hand: {node: "
-                                               "device_node, clock: realtime, driver: pointer}}\n",
+    const Launch launch = load_launch_text(test::filled(R"(cordis: 1
+clock: <clock>
+nodes: {sim: {node: sim_node}, hand: {node: device_node, clock: realtime, driver: pointer}}
+)",
+                                                        {{"clock", clock}}),
                                            "l.yaml", {"hand.driver=mock"}, problems);
     EXPECT_EQ(problems.text(), "");
     ASSERT_EQ(launch.nodes.size(), clock == "realtime" ? 2u : 1u) << clock;
@@ -210,121 +219,218 @@ INSTANTIATE_TEST_SUITE_P(
             "cordis: 1\nnodes: [sim]\n",
             "l.yaml:2:8: error: 'nodes' in launch file must be a mapping of keys, got a sequence",
             ""},
-        BadLaunch{"cordis: 1\nsession: \"*\"\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+session: "*"
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:2:10: error: the name of a session is 1 to 64 letters, digits, '_' and "
                   "'-', got '*'",
                   ""},
-        BadLaunch{"cordis: 1\ndomain: -1\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: -1
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:2:9: error: 'domain' in launch file must be between 0 and 101, got -1",
                   ""},
-        BadLaunch{"cordis: 1\nclok: asap\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+clok: asap
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:2:1: error: unknown key 'clok' in launch file", "did you mean 'clock'?"},
-        BadLaunch{"cordis: 1\nnetwrk: {}\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+netwrk: {}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:2:1: error: unknown key 'netwrk' in launch file",
                   "did you mean 'network'?"},
-        BadLaunch{"cordis: 1\nnodes:\n  sim: {scene: x}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  sim: {scene: x}
+)",
                   "l.yaml:3:8: error: missing key 'node' in node 'sim'", ""},
-        BadLaunch{"cordis: 1\nnodes:\n  sim: sim_node\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  sim: sim_node
+)",
                   "l.yaml:3:8: error: node 'sim' must be a mapping of keys, got 'sim_node'", ""},
-        BadLaunch{"cordis: 1\nnodes:\n  a b: {node: sim_node}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a b: {node: sim_node}
+)",
                   "l.yaml:3:3: error: the name of a node is 1 to 64 letters, digits, '_' and '-', "
                   "got 'a b'",
                   ""},
-        BadLaunch{"cordis: 1\nnodes:\n  view: {node: vis_node}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  view: {node: vis_node}
+)",
                   "l.yaml:3:16: error: 'node' in node 'view' must be one of sim_node, device_node, "
                   "viz_node, record_node, got 'vis_node'",
                   "did you mean 'viz_node'?"},
-        BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  b: {node: sim_node}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a: {node: sim_node}
+  b: {node: sim_node}
+)",
                   "l.yaml:4:3: error: a session has one sim_node, and 'a' is one already",
                   "'a' is at line 3"},
-        BadLaunch{"cordis: 1\nnodes:\n  a: {node: sim_node}\n  a: {node: viz_node}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a: {node: sim_node}
+  a: {node: viz_node}
+)",
                   "l.yaml:4:3: error: duplicate key 'a'", "first defined at line 3"},
         BadLaunch{
-            "cordis: 1\ndomain: 7\nnetwork: eth0\nnodes: {sim: {node: sim_node}}\n",
+            R"(cordis: 1
+domain: 7
+network: eth0
+nodes: {sim: {node: sim_node}}
+)",
             "l.yaml:3:10: error: 'network' in launch file must be a mapping of keys, got 'eth0'",
             ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2], interfase: eth0}\nnodes: "
-                  "{sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {peers: [10.0.0.2], interfase: eth0}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:30: error: unknown key 'interfase' in network",
                   "did you mean 'interface'?"},
         BadLaunch{
-            "cordis: 1\ndomain: 7\nnetwork: {interface: eth0}\nnodes: {sim: {node: sim_node}}\n",
+            R"(cordis: 1
+domain: 7
+network: {interface: eth0}
+nodes: {sim: {node: sim_node}}
+)",
             "l.yaml:3:10: error: network names no other host: it needs 'peers', 'discovery_server' "
             "or 'multicast: true'",
             "peers: [192.168.5.1, 192.168.5.2], all hosts of the session"},
         BadLaunch{
-            "cordis: 1\ndomain: 7\nnetwork: {multicast: true}\nnodes: {sim: {node: sim_node}}\n",
+            R"(cordis: 1
+domain: 7
+network: {multicast: true}
+nodes: {sim: {node: sim_node}}
+)",
             "l.yaml:3:10: error: network.multicast without 'peers' needs 'interface'",
             "interface: eth0"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: lo, peers: [10.0.0.2]}\nnodes: {sim: "
-                  "{node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {interface: lo, peers: [10.0.0.2]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:22: error: network.interface: lo is the loopback interface, which no "
                   "other host reaches",
                   "leave 'network:' out for a session on one host"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: 127.0.0.1, peers: "
-                  "[10.0.0.2]}\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {interface: 127.0.0.1, peers: [10.0.0.2]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:22: error: network.interface: 127.0.0.1 is the loopback interface, "
                   "which no other host reaches",
                   "leave 'network:' out for a session on one host"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: 10.0.0, peers: [10.0.0.2]}\nnodes: "
-                  "{sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {interface: 10.0.0, peers: [10.0.0.2]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:22: error: network.interface: '10.0.0' is neither an IPv4 address nor "
                   "the name of an interface",
                   ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {interface: [eth0], peers: [10.0.0.2]}\nnodes: "
-                  "{sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {interface: [eth0], peers: [10.0.0.2]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:22: error: 'interface' in network must be a text, got a sequence", ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2, 127.0.0.1]}\nnodes: {sim: "
-                  "{node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {peers: [10.0.0.2, 127.0.0.1]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:29: error: network.peers: 127.0.0.1 is the loopback interface, which "
                   "no other host reaches",
                   "leave 'network:' out for a session on one host"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.256]}\nnodes: {sim: {node: "
-                  "sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {peers: [10.0.0.256]}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:19: error: network.peers: '10.0.0.256' is neither an IPv4 address nor "
                   "the name of a host",
                   ""},
         BadLaunch{
-            "cordis: 1\ndomain: 7\nnetwork: {peers: ['fe80::1']}\nnodes: {sim: {node: sim_node}}\n",
+            R"(cordis: 1
+domain: 7
+network: {peers: ['fe80::1']}
+nodes: {sim: {node: sim_node}}
+)",
             "l.yaml:3:19: error: network.peers: 'fe80::1' is neither an IPv4 address nor the name "
             "of a host",
             ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: []}\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {peers: []}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:18: error: network.peers names no host", ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: 10.0.0.2}\nnodes: {sim: "
-                  "{node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {discovery_server: 10.0.0.2}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:29: error: network.discovery_server is ADDRESS:PORT with a port of 1 "
                   "to 65535, got '10.0.0.2'",
                   "discovery_server: 192.168.5.1:11811"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: '10.0.0.2:66000'}\nnodes: "
-                  "{sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {discovery_server: '10.0.0.2:66000'}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:29: error: network.discovery_server is ADDRESS:PORT with a port of 1 "
                   "to 65535, got '10.0.0.2:66000'",
                   "discovery_server: 192.168.5.1:11811"},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {discovery_server: '10.0.0.2:11811', multicast: "
-                  "true}\nnodes: {sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {discovery_server: '10.0.0.2:11811', multicast: true}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:29: error: network.discovery_server finds all others by itself: no "
                   "'peers' and no 'multicast' beside it",
                   ""},
-        BadLaunch{"cordis: 1\ndomain: 7\nnetwork: {peers: [10.0.0.2], multicast: yes}\nnodes: "
-                  "{sim: {node: sim_node}}\n",
+        BadLaunch{R"(cordis: 1
+domain: 7
+network: {peers: [10.0.0.2], multicast: yes}
+nodes: {sim: {node: sim_node}}
+)",
                   "l.yaml:3:41: error: 'multicast' in network must be true or false, got 'yes'",
                   ""},
-        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, required: no}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a: {node: viz_node, required: no}
+)",
                   "l.yaml:3:33: error: 'required' in node 'a' must be true or false, got 'no'", ""},
-        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, clock: fast}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a: {node: viz_node, clock: fast}
+)",
                   "l.yaml:3:30: error: 'clock' in node 'a' must be one of realtime, lockstep, "
                   "asap, got 'fast'",
                   ""},
-        BadLaunch{"cordis: 1\nnodes:\n  a: {node: viz_node, respawn: 3}\n",
+        BadLaunch{R"(cordis: 1
+nodes:
+  a: {node: viz_node, respawn: 3}
+)",
                   "l.yaml:3:32: error: 'respawn' in node 'a' must be true or false, got '3'", ""}));
 
 TEST(Launch, ReadsItsNetworkAndTakesOverridesOfIt) {
   Problems problems;
 
   const Launch launch = load_launch_text(
-      "cordis: 1\ndomain: 7\nnetwork: {peers: [studio.local, 10.0.0.2]}\n"
-      "nodes: {sim: {node: sim_node}}\n",
+      R"(cordis: 1
+domain: 7
+network: {peers: [studio.local, 10.0.0.2]}
+nodes: {sim: {node: sim_node}}
+)",
       "l.yaml", {"network.interface=eth0", "network.multicast=true"}, problems);
 
   ASSERT_EQ(problems.text(), "");
@@ -357,8 +463,12 @@ TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
   Problems problems;
 
   static_cast<void>(load_launch_text(
-      "cordis: 1\nnodes:\n  costarring: {node: viz_node}\n  liquid: {node: viz_node}\n", "l.yaml",
-      {}, problems));
+      R"(cordis: 1
+nodes:
+  costarring: {node: viz_node}
+  liquid: {node: viz_node}
+)",
+      "l.yaml", {}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u);
   EXPECT_EQ(problems.all()[0].message, "'liquid' and 'costarring' have the same hash");

@@ -105,7 +105,13 @@ a:
 
 TEST(MappingReader, StandsInForABrokenRequiredValueWithOneInRange) {
   Problems problems;
-  MappingReader reader(load_text("a: x\nb: x\nd: x\ne: []\n", "t", problems), "thing", problems);
+  MappingReader reader(load_text(R"(a: x
+b: x
+d: x
+e: []
+)",
+                                 "t", problems),
+                       "thing", problems);
   EXPECT_EQ(reader.required_number("a", Range::positive()), 1.0);
   EXPECT_EQ(reader.required_number("missing", Range::between(3, 4)), 4.0);
   EXPECT_EQ(reader.required_integer("b", 2, 5), 2);
@@ -119,9 +125,11 @@ TEST(MappingReader, SuggestsTheKnownKeyNextToAnUnknownOne) {
     r.optional_number("mass_kg", 1.0);
     r.optional_number("rate_hz", 1.0);
   };
-  EXPECT_EQ(
-      problems_of("mass_g: 3\n", read),
-      "t:1:1: error: unknown key 'mass_g' in thing\nmass_g: 3\n^\n  hint: did you mean 'mass_kg'?");
+  EXPECT_EQ(problems_of("mass_g: 3\n", read),
+            R"(t:1:1: error: unknown key 'mass_g' in thing
+mass_g: 3
+^
+  hint: did you mean 'mass_kg'?)");
   EXPECT_EQ(problems_of("rate_khz: 3\n", read),
             R"(t:1:1: error: unknown key 'rate_khz' in thing
 rate_khz: 3
@@ -230,7 +238,9 @@ TEST(MappingReader, RefusesWhatIsNoWholeNumberInRange) {
 TEST(MappingReader, RefusesOtherWordsThanTrueAndFalse) {
   const auto read = [](MappingReader& r) { r.optional_truth("x", true); };
   EXPECT_EQ(problems_of("x: maybe\n", read),
-            "t:1:4: error: 'x' in thing must be true or false, got 'maybe'\nx: maybe\n   ^");
+            R"(t:1:4: error: 'x' in thing must be true or false, got 'maybe'
+x: maybe
+   ^)");
   EXPECT_NE(problems_of("x: \"true\"\n", read), "");
   EXPECT_NE(problems_of("x: 1\n", read), "");
 }
@@ -238,9 +248,13 @@ TEST(MappingReader, RefusesOtherWordsThanTrueAndFalse) {
 TEST(MappingReader, RefusesTextsThatAreNone) {
   const auto read = [](MappingReader& r) { r.required_text("x"); };
   EXPECT_EQ(problems_of("x: \"\"\n", read),
-            "t:1:4: error: 'x' in thing must not be empty\nx: \"\"\n   ^");
+            R"(t:1:4: error: 'x' in thing must not be empty
+x: ""
+   ^)");
   EXPECT_EQ(problems_of("x: {a: 1}\n", read),
-            "t:1:4: error: 'x' in thing must be a text, got a mapping\nx: {a: 1}\n   ^");
+            R"(t:1:4: error: 'x' in thing must be a text, got a mapping
+x: {a: 1}
+   ^)");
 }
 
 TEST(MappingReader, ListsTheChoicesAndSuggestsOne) {
@@ -257,15 +271,25 @@ x: lockstp
 TEST(MappingReader, CountsTheNumbersOfASequence) {
   const auto read = [](MappingReader& r) { r.required_numbers("x", 2); };
   EXPECT_EQ(problems_of("x: [1, 2, 3]\n", read),
-            "t:1:4: error: 'x' in thing must have 2 numbers, got 3\nx: [1, 2, 3]\n   ^");
+            R"(t:1:4: error: 'x' in thing must have 2 numbers, got 3
+x: [1, 2, 3]
+   ^)");
   EXPECT_EQ(problems_of("x: []\n", read),
-            "t:1:4: error: 'x' in thing must have 2 numbers, got 0\nx: []\n   ^");
+            R"(t:1:4: error: 'x' in thing must have 2 numbers, got 0
+x: []
+   ^)");
   EXPECT_EQ(problems_of("x: [1, nan]\n", read),
-            "t:1:8: error: 'x' in thing must be a finite number, got nan\nx: [1, nan]\n       ^");
+            R"(t:1:8: error: 'x' in thing must be a finite number, got nan
+x: [1, nan]
+       ^)");
   EXPECT_EQ(problems_of("x: []\n", [](MappingReader& r) { r.required_numbers("x"); }),
-            "t:1:4: error: 'x' in thing must not be empty\nx: []\n   ^");
+            R"(t:1:4: error: 'x' in thing must not be empty
+x: []
+   ^)");
   EXPECT_EQ(problems_of("x: []\n", [](MappingReader& r) { r.required_integers("x", 0, 1); }),
-            "t:1:4: error: 'x' in thing must not be empty\nx: []\n   ^");
+            R"(t:1:4: error: 'x' in thing must not be empty
+x: []
+   ^)");
 }
 
 TEST(MappingReader, NamesTheKindThatWasWanted) {
@@ -288,7 +312,10 @@ TEST(MappingReader, SaysWhatTheCallerFindsWrong) {
                           r.required_number("x");
                           r.error_at("x", "is odd", "make it even");
                         }),
-            "t:1:4: error: is odd\nx: 1\n   ^\n  hint: make it even");
+            R"(t:1:4: error: is odd
+x: 1
+   ^
+  hint: make it even)");
 }
 
 }  // namespace

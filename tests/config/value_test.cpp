@@ -96,7 +96,12 @@ TEST(WithValueAt, ReplacesAddsAndLeavesTheOriginalAlone) {
 }
 
 TEST(Value, KnowsWhereAByteOfItsTextStands) {
-  const Value value = value_of("a: \"über x\"\nb: plain x\nc: 'it''s x'\nd: |\n  x\n");
+  const Value value = value_of(R"(a: "über x"
+b: plain x
+c: 'it''s x'
+d: |
+  x
+)");
   const Place quoted = value.find("a").place_in_text(6);  // after a letter of two bytes
   EXPECT_EQ(quoted.line, 1);
   EXPECT_EQ(quoted.column, 10);

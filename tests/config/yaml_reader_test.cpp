@@ -47,7 +47,11 @@ TEST(LoadText, DistinguishesQuotedScalarsFromPlainOnes) {
 TEST(LoadText, AKeyWithoutAValueIsNothingAtItsOwnPlace) {
   Problems problems;
 
-  const Value root = load_text("a:\nb: ~\nc: null\n", "t", problems);
+  const Value root = load_text(R"(a:
+b: ~
+c: null
+)",
+                               "t", problems);
 
   EXPECT_EQ(root.find("a").kind(), Value::Kind::kNothing);
   EXPECT_EQ(placed(root.find("a").place()), "t:1:1");
@@ -113,7 +117,11 @@ z: {<<: [*base, *more]}
 TEST(LoadText, GoesOnBehindADuplicateKeyWithItsFirstValue) {
   Problems problems;
 
-  const Value root = load_text("a: 1\nb: {c: 1, c: 2}\na: 3\n", "t", problems);
+  const Value root = load_text(R"(a: 1
+b: {c: 1, c: 2}
+a: 3
+)",
+                               "t", problems);
 
   EXPECT_EQ(problems.text(),
             R"(t:2:11: error: duplicate key 'c'
@@ -166,7 +174,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"a: 1\n- b\n", "t:2:1: error: YAML syntax: this belongs to no key", ""},
         BadText{"- a\nb: 2\n", "t:2:1: error: a second YAML document begins here",
                 "check the indentation"},
-        BadText{"a: 1\n---\nb: 2\n", "t:2:1: error: a second YAML document begins here", ""},
+        BadText{R"(a: 1
+---
+b: 2
+)",
+                "t:2:1: error: a second YAML document begins here", ""},
         BadText{"a: @b\n", "t:1:4: error: YAML syntax: a word cannot begin with this character",
                 "put quotes around it"},
         BadText{"a: *x\n", "t:1:4: error: YAML syntax: the referenced anchor is not defined", ""},
@@ -184,7 +196,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(LoadText, RefusesWordsThatAreNoKeysAndTags) {
   Problems problems;
 
-  const Value root = load_text("? [1]\n: 2\n: 3\na: !x 4\n", "t", problems);
+  const Value root = load_text(R"(? [1]
+: 2
+: 3
+a: !x 4
+)",
+                               "t", problems);
 
   EXPECT_TRUE(root.exists());
   const std::string text = problems.text();
@@ -277,8 +294,8 @@ TEST_F(LoadFile, SuggestsTheNearestNameForAMissingFile) {
   EXPECT_FALSE(load_file((folder / "pluked_string.yaml").string(), problems).exists());
 
   EXPECT_EQ(problems.text(), (folder / "pluked_string.yaml").string() +
-                                 ": error: cannot be read: No such file or directory\n  hint: did "
-                                 "you mean 'plucked_string.yaml'?");
+                                 R"(: error: cannot be read: No such file or directory
+  hint: did you mean 'plucked_string.yaml'?)");
 }
 
 TEST_F(LoadFile, BlamesThePlaceThatNamesAMissingFile) {

@@ -268,8 +268,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "force_limit_n falls to zero within watchdog_s, got 100"},
         BadDevice{"axes: 1\nmock: {key: {stop_viscosity_n_s_per_m: 0.1}}",
                   "device.yaml:2:40: error: stop_viscosity_n_s_per_m must be at least 0.63"},
-        BadDevice{"axes: 1\nmock: {hand: {moves: [{at_s: 0, in_s: 1, to_m: 0}, {at_s: 0.5, in_s: "
-                  "1, to_m: 0}]}}",
+        BadDevice{R"(axes: 1
+mock: {hand: {moves: [{at_s: 0, in_s: 1, to_m: 0}, {at_s: 0.5, in_s: 1, to_m: 0}]}})",
                   "device.yaml:2:59: error: a move must not begin before the one before it has "
                   "ended"},
         BadDevice{"axes: 1\nmock: {hand: {repeat_s: 1, moves: [{at_s: 0, in_s: 2, to_m: 0}]}}",
@@ -277,8 +277,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "move"},
         BadDevice{"axes: 2\nmock: {hand: {axes: [0, 2]}}", "device.yaml:2:25: error: "},
         BadDevice{"axes: 2\nmock: {hand: {axes: [1, 1]}}", "axis 1 stands here twice"},
-        BadDevice{"axes: 1\nmock: {key: {mass_kg: 0.0001, stop_n_per_m: 1e9, "
-                  "stop_viscosity_n_s_per_m: 10}}",
+        BadDevice{R"(axes: 1
+mock: {key: {mass_kg: 0.0001, stop_n_per_m: 1e9, stop_viscosity_n_s_per_m: 10}})",
                   "device.yaml:2:7: error: mock: its mechanics are too fast"},
         // the driver that is not in use is checked too
         BadDevice{"axes: 1\nscript: {positions: 3}", "device.yaml:2:21: error: "}));

@@ -16,6 +16,7 @@
 #include "node/config/yaml_reader.h"
 #include "record_node/record_config.h"
 #include "sim_node/sim_config.h"
+#include "tests/support/filled.h"
 #include "viz_node/viz_config.h"
 
 namespace cordis {
@@ -93,12 +94,17 @@ Tables accepted() {
   Tables tables;
   const std::string unknown = kUnknown + std::string(": 1");
   config::Problems problems;
-  const config::Launch launch =
-      config::load_launch_text("cordis: 1\ndomain: 1\nnetwork: {peers: [h], " + unknown + "}\n" +
-                                   unknown + "\nnodes:\n  sim: {node: sim_node, scene: none, " +
-                                   unknown + "}\n  view: {node: viz_node, " + unknown +
-                                   "}\n  record: {node: record_node, " + unknown + "}\n",
-                               "launch", {}, problems);
+  const config::Launch launch = config::load_launch_text(test::filled(R"(cordis: 1
+domain: 1
+network: {peers: [h], <unknown>}
+<unknown>
+nodes:
+  sim: {node: sim_node, scene: none, <unknown>}
+  view: {node: viz_node, <unknown>}
+  record: {node: record_node, <unknown>}
+)",
+                                                                      {{"unknown", unknown}}),
+                                                         "launch", {}, problems);
   sim::read_sim_config(launch, launch.nodes.at(0), problems);
   viz::read_viz_config(launch.nodes.at(1), problems);
   record::read_record_section(launch.nodes.at(2), problems);

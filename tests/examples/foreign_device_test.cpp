@@ -213,9 +213,9 @@ INSTANTIATE_TEST_SUITE_P(Clocks, ForeignClock, ::testing::Values("realtime", "lo
 
 TEST(ForeignDevice, BesideAHotStandbyEndsAndSaysSo) {
   LiveSession session("realtime", std::string(kSimAlone) +
-                                      "  keyboard: {node: device_node, device: key.yaml}\n"
-                                      "  spare: {node: device_node, device: key.yaml, "
-                                      "standby_for: keyboard}\n");
+                                      R"(  keyboard: {node: device_node, device: key.yaml}
+  spare: {node: device_node, device: key.yaml, standby_for: keyboard}
+)");
   session.add_file("scene.yaml", mass_scene());
   session.add_file("key.yaml", kSameHand);
   session.start("sim_node", "sim");

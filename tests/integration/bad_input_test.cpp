@@ -106,10 +106,13 @@ TEST(BadInput, ADeviceWithoutWhatAPortNeedsIsReportedThereWithBothNumbers) {
 }
 
 TEST(BadInput, ASceneWithoutMatterIsRefused) {
-  expect_bad_file(
-      run("cordis: 1\nname: empty\nspace: 1\nstep: {rate_hz: 1000, integrator: cordis}\n",
-          steady_key(0, 0)),
-      "scene.yaml", "matter");
+  expect_bad_file(run(R"(cordis: 1
+name: empty
+space: 1
+step: {rate_hz: 1000, integrator: cordis}
+)",
+                      steady_key(0, 0)),
+                  "scene.yaml", "matter");
 }
 
 TEST(BadInput, NumbersThatAreNotFiniteAreRefused) {

@@ -142,8 +142,11 @@ links:
 /// Down and up by 40 mm in 40 ms: 2 m/s.
 std::string fast_key() {
   return std::string(kScriptedKey) +
-         "    - {at_s: 0, m: 0}\n    - {at_s: 0.02, m: -0.04}\n    - {at_s: 0.04, m: 0}\n"
-         "  repeat_s: 0.04\n";
+         R"(    - {at_s: 0, m: 0}
+    - {at_s: 0.02, m: -0.04}
+    - {at_s: 0.04, m: 0}
+  repeat_s: 0.04
+)";
 }
 
 TEST_F(Bound, ACertifiedSceneBeyondItsReachSaysSoAndLetsGoOnceItMakesEnergy) {

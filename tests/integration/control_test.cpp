@@ -519,7 +519,10 @@ TEST_F(ControlOfFiles, ThatAreNoScenesAreNotQuoted) {
   start();
   session_.add_file("secret", "password swordfish\n");
   session_.add_file("secret.yaml", "password: swordfish\nspace: [swordfish\n");
-  session_.add_file("broken.yaml", "cordis: 1\nspace: [1, 2\nname: not_quoted\n");
+  session_.add_file("broken.yaml", R"(cordis: 1
+space: [1, 2
+name: not_quoted
+)");
   for (const char* path : {"secret", "secret.yaml"}) {
     EXPECT_NE(answer_to_load(path).find("this is no scene: it has no line that begins with"),
               std::string::npos)

@@ -7,16 +7,18 @@
 
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::test {
 namespace {
 
 std::string state_hash_of_a_run(const std::string& driver) {
   const std::string configs = CORDIS_SOURCE_DIR "/launch_configs/";
-  LiveSession session("lockstep", "  sim: {node: sim_node, scene: '" + configs +
-                                      "scenes/plucked_string.yaml'}\n" +
-                                      "  keyboard: {node: device_node, device: '" + configs +
-                                      "devices/keyboard.yaml', driver: " + driver + "}\n");
+  LiveSession session(
+      "lockstep", filled(R"(  sim: {node: sim_node, scene: '<configs>scenes/plucked_string.yaml'}
+  keyboard: {node: device_node, device: '<configs>devices/keyboard.yaml', driver: <driver>}
+)",
+                         {{"configs", configs}, {"driver", driver}}));
   ChildProcess& launcher = session.start_launcher({"--duration", "2s"});
   EXPECT_EQ(launcher.wait(kPatience), 0);
   const std::string output = launcher.output();

@@ -18,9 +18,10 @@ namespace cordis::test {
 namespace {
 
 constexpr const char* kSimKeyAndPedal =
-    "  sim: {node: sim_node, scene: scene.yaml}\n"
-    "  keyboard: {node: device_node, device: key.yaml}\n"
-    "  pedal: {node: device_node, device: pedal.yaml}\n";
+    R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+  pedal: {node: device_node, device: pedal.yaml}
+)";
 
 /// wall_scene() with a second device before the same spring.
 std::string two_port_scene() {

@@ -20,6 +20,7 @@
 #include "tests/device/kfb1_board.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
+#include "tests/support/filled.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::test {
@@ -34,7 +35,13 @@ constexpr double kFullScale = 10.0;     // of the board [N]
 constexpr double kRounding = 1e-6;      // of the trace [N]
 
 const char* const kLimits =
-    "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nforce_limit_n: 5\nslew_limit_n_per_s: 300\n";
+    R"(cordis: 1
+axes: 1
+travel_m: 0.04
+rest: top
+force_limit_n: 5
+slew_limit_n_per_s: 300
+)";
 
 /// What the driver of a device with one axis was given.
 struct Given {
@@ -203,9 +210,12 @@ TEST(LockstepWithMotors, ForcesFadeWhenTheDeviceIsAskedToStop) {
   const std::string trace = (session.folder() / "trace.csv").string();
   const std::string line = (session.folder() / "tty").string();
   session.add_file("scene.yaml", wall_scene(kStiffness));
-  session.add_file("key.yaml", std::string(kLimits) +
-                                   "watchdog_s: 0.1\ndriver: kfb1\nkfb1: {port: " + line +
-                                   ", lost_after_s: 0.2}\ntrace: {file: " + trace + "}\n");
+  session.add_file("key.yaml", std::string(kLimits) + filled(R"(watchdog_s: 0.1
+driver: kfb1
+kfb1: {port: <line>, lost_after_s: 0.2}
+trace: {file: <trace>}
+)",
+                                                             {{"line", line}, {"trace", trace}}));
   Kfb1Board board(1);
   board.has_watchdog = false;  // one of 20 ms would let go first on a busy machine
   board.positions[0] = 16384;

@@ -21,6 +21,7 @@
 #include "tests/device/pantograph_board.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::test {
 namespace {
@@ -53,8 +54,13 @@ class FireFaderOnALine : public Board {
     faders_.positions[0] = 190;
     faders_.plug.into_serial_line(folder / "tty");
     return std::string(kLimits) +
-           "axes: 1\ntravel_m: 0.04\nrest: top\ndriver: firefader\nfirefader: {full_scale_n: 5, " +
-           kPatient + "port: " + (folder / "tty").string() + "}\n";
+           filled(R"(axes: 1
+travel_m: 0.04
+rest: top
+driver: firefader
+firefader: {full_scale_n: 5, <patient>port: <port>}
+)",
+                  {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
   const ForceLog& log() const override { return faders_.log; }
 
@@ -68,8 +74,13 @@ class HaplyOnALine : public Board {
     board_.put_pen({-0.01, 0.1});
     board_.plug.into_serial_line(folder / "tty");
     return std::string(kLimits) +
-           "axes: 2\ntravel_m: 0.1\nrest: middle\ndriver: haply\nhaply: {rest_m: [0, 0.1], " +
-           kPatient + "port: " + (folder / "tty").string() + "}\n";
+           filled(R"(axes: 2
+travel_m: 0.1
+rest: middle
+driver: haply
+haply: {rest_m: [0, 0.1], <patient>port: <port>}
+)",
+                  {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
   const ForceLog& log() const override { return board_.log; }
 
@@ -86,8 +97,13 @@ class Kfb1OnALine : public Board {
     std::string where = "port: " + (folder / "tty").string();
     if (udp_) where = "udp: '127.0.0.1:" + std::to_string(board_.plug.into_udp()) + "'";
     if (!udp_) board_.plug.into_serial_line(folder / "tty");
-    return std::string(kLimits) + "axes: 1\ntravel_m: 0.04\nrest: top\ndriver: kfb1\nkfb1: {" +
-           kPatient + where + "}\n";
+    return std::string(kLimits) + filled(R"(axes: 1
+travel_m: 0.04
+rest: top
+driver: kfb1
+kfb1: {<patient><where>}
+)",
+                                         {{"patient", kPatient}, {"where", where}});
   }
   const ForceLog& log() const override { return board_.log; }
 

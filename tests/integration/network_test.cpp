@@ -31,6 +31,7 @@
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/filled.h"
 #include "tests/support/two_hosts.h"
 
 namespace cordis::test {
@@ -51,14 +52,17 @@ class Apart {
   explicit Apart(const std::string& clock, std::uint64_t seed = 1) : hosts(seed) {
     std::string name = (std::filesystem::temp_directory_path() / "cordis-test-XXXXXX").string();
     folder = mkdtemp(name.data());
-    add_file("launch.yaml", "cordis: 1\nsession: apart\ndomain: " + std::to_string(kDomain) +
-                                "\nnetwork: {peers: [192.168.5.1, 192.168.5.2]}\nclock: " + clock +
-                                R"(
+    add_file("launch.yaml", filled(R"(cordis: 1
+session: apart
+domain: <domain>
+network: {peers: [192.168.5.1, 192.168.5.2]}
+clock: <clock>
 nodes:
   sim: {node: sim_node, scene: scene.yaml}
   keyboard: {node: device_node, device: key.yaml}
   view: {node: viz_node, port: 0}
-)");
+)",
+                                   {{"domain", std::to_string(kDomain)}, {"clock", clock}}));
     add_file("scene.yaml", wall_scene(200.0));
     add_file("key.yaml", steady_key(-0.01, 0.0) + "force_limit_n: " + std::to_string(kForceLimit) +
                              "\nslew_limit_n_per_s: " + std::to_string(kSlew) +
@@ -349,7 +353,11 @@ TEST_F(Network, ForcesStayWithinTheirLimitsOverASlowAndBadCable) {
 
 constexpr double kSoftWall = 100.0;  // [N/m]: with 1 N s/m an answer may take 9.5 ms
 constexpr const char* kWeakKey =
-    "viscosity_n_s_per_m: 1\nmoving_mass_kg: 0.05\nforce_limit_n: 5\nslew_limit_n_per_s: 100\n";
+    R"(viscosity_n_s_per_m: 1
+moving_mass_kg: 0.05
+force_limit_n: 5
+slew_limit_n_per_s: 100
+)";
 constexpr const char* kTooSlow = "It needs an answer within [0-9]+ us; its answers take [0-9]+ us";
 
 /// A key with known limits before a soft wall, and a trace of what its motor gets.
@@ -494,7 +502,11 @@ class NetworkLoss : public Network, public ::testing::WithParamInterface<double>
 
 TEST_P(NetworkLoss, ALockstepSessionGivesTheHashThatItGivesOnOneHost) {
   Apart apart("lockstep");
-  apart.add_file("key.yaml", "cordis: 1\naxes: 1\nrate_hz: 1000\ndriver: mock\n");
+  apart.add_file("key.yaml", R"(cordis: 1
+axes: 1
+rate_hz: 1000
+driver: mock
+)");
   ChildProcess& alone = apart.start(
       TwoHosts::kFirst,
       {"run", apart.launch_file(), "--no-color", "--only", "sim,keyboard", "--duration", "100ms"});
@@ -512,7 +524,11 @@ TEST_P(NetworkLoss, ALockstepSessionGivesTheHashThatItGivesOnOneHost) {
 /// Minutes long: tests/campaigns/network.sh runs it.
 TEST_F(Network, DISABLED_EveryDelayJitterAndLossGivesTheHashOfOneHost) {
   Apart apart("lockstep");
-  apart.add_file("key.yaml", "cordis: 1\naxes: 1\nrate_hz: 1000\ndriver: mock\n");
+  apart.add_file("key.yaml", R"(cordis: 1
+axes: 1
+rate_hz: 1000
+driver: mock
+)");
   ChildProcess& alone = apart.start(
       TwoHosts::kFirst,
       {"run", apart.launch_file(), "--no-color", "--only", "sim,keyboard", "--duration", "50ms"});

@@ -14,6 +14,7 @@
 #include "idl/scene.h"
 #include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
+#include "tests/support/filled.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
@@ -33,20 +34,32 @@ std::string plucked() {
 
 /// The hand of the gallery, sooner.
 std::string sounding() {
-  return nodes_of("sounding_string",
-                  "hand:\n    node: device_node\n    device: '" + std::string(kConfigs) +
-                      "devices/two_thimbles.yaml'\n    driver: script\n    script:\n"
-                      "      positions:\n        - {at_s: 0, m: [0, 0, 0, 0]}\n"
-                      "        - {at_s: 0.3, m: [0, 0.08, 0, -0.04]}\n"
-                      "        - {at_s: 1, m: [0, 0.08, 0, -0.08]}\n");
+  return nodes_of("sounding_string", filled(R"(hand:
+    node: device_node
+    device: '<configs>devices/two_thimbles.yaml'
+    driver: script
+    script:
+      positions:
+        - {at_s: 0, m: [0, 0, 0, 0]}
+        - {at_s: 0.3, m: [0, 0.08, 0, -0.04]}
+        - {at_s: 1, m: [0, 0.08, 0, -0.08]}
+)",
+                                            {{"configs", std::string(kConfigs)}}));
 }
 
 /// A hand that pulls the hammer up, where the key is at the end of its travel.
 std::string pushed_beyond_its_travel() {
-  return nodes_of("anvil", "hand:\n    node: device_node\n    device: '" + std::string(kConfigs) +
-                               "devices/keyboard.yaml'\n    driver: script\n    script:\n"
-                               "      forces:\n        - {at_s: 0, n: 0}\n"
-                               "        - {at_s: 0.2, n: 15}\n        - {at_s: 1, n: 15}\n");
+  return nodes_of("anvil", filled(R"(hand:
+    node: device_node
+    device: '<configs>devices/keyboard.yaml'
+    driver: script
+    script:
+      forces:
+        - {at_s: 0, n: 0}
+        - {at_s: 0.2, n: 15}
+        - {at_s: 1, n: 15}
+)",
+                                  {{"configs", std::string(kConfigs)}}));
 }
 
 std::string hash_in(const std::string& output) {

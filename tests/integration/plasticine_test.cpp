@@ -9,6 +9,7 @@
 #include "idl/scene.h"
 #include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
+#include "tests/support/filled.h"
 
 namespace cordis::test {
 namespace {
@@ -49,12 +50,13 @@ class SignalHistory {
 };
 
 TEST(Plasticine, IsTornInTwoAndIsOneAgainInTheHandsOfTwoProcesses) {
-  LiveSession session("lockstep",
-                      "  sim: {node: sim_node, scene: '" + kConfigs +
-                          "scenes/plasticine.yaml', duration_s: 2.7}\n" +
-                          "  thimbles: {node: device_node, device: '" + kConfigs +
-                          "devices/two_thimbles.yaml', driver: mock, mock: {hand: {gesture: {kind: "
-                          "knead, open_m: 0.015, grip_m: -0.06, in_s: 0.7, stay_s: 0.3}}}}\n");
+  LiveSession session(
+      "lockstep",
+      filled(R"(  sim: {node: sim_node, scene: '<configs>scenes/plasticine.yaml', duration_s: 2.7}
+  thimbles: {node: device_node, device: '<configs>devices/two_thimbles.yaml', driver: mock,
+             mock: {hand: {gesture: {kind: knead, open_m: 0.015, grip_m: -0.06, in_s: 0.7, stay_s: 0.3}}}}
+)",
+             {{"configs", kConfigs}}));
   SignalHistory pieces(session.participant(), "pieces");
   session.start("sim_node", "sim");
   session.start("device_node", "thimbles");

@@ -40,8 +40,13 @@ class PointerTakesOver : public ::testing::Test {
     session_.add_file("scene.yaml",
                       wall_scene(kWall) + "signals: {place: {of: key, quantity: position}}\n");
     session_.add_file("key.yaml",
-                      "cordis: 1\naxes: 1\ntravel_m: 0.04\nrest: top\nforce_limit_n: 5\n"
-                      "mock: {hand: {stiffness_n_per_m: 400, finger: {holds: true}}}\n");
+                      R"(cordis: 1
+axes: 1
+travel_m: 0.04
+rest: top
+force_limit_n: 5
+mock: {hand: {stiffness_n_per_m: 400, finger: {holds: true}}}
+)");
     for (const std::string name : {"keyboard", "pointer"}) session_.start("device_node", name);
     session_.start("sim_node", "sim");
   }

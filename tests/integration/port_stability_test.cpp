@@ -11,6 +11,7 @@
 #include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/filled.h"
 #include "tests/support/haptic_boundaries.h"
 
 namespace cordis::test {
@@ -146,29 +147,33 @@ TEST_P(PortStability, RoleMassSwingsJustWhereTheTableSays) {
 }
 
 std::string held_scene() {
-  return R"(cordis: 1
+  return filled(
+      R"(cordis: 1
 name: held
 space: 1
 step: {rate_hz: 1000, gesture_rate_hz: 1000}
 liaisons:
-  air: {kind: damper, viscosity_n_s_per_m: )" +
-         number(kZ * kMass / kPeriod) +
-         R"(}
+  air: {kind: damper, viscosity_n_s_per_m: <viscosity_n_s_per_m>}
 matter:
   ground: {kind: fixed, at_m: [0]}
 ports:
-  key: {device: keyboard, axes: [0], role: liaison, mass_kg: )" +
-         number(kMass) + ", at_m: [0]}\nlinks:\n  - {liaison: air, between: [key, ground]}\n";
+  key: {device: keyboard, axes: [0], role: liaison, mass_kg: <mass>, at_m: [0]}
+links:
+  - {liaison: air, between: [key, ground]}
+)",
+      {{"viscosity_n_s_per_m", number(kZ * kMass / kPeriod)}, {"mass", number(kMass)}});
 }
 
 /// A hand of 100 kg holds the mass with a spring, and moves by so much once the device has taken
 /// over.
 std::string holding(double kappa, double way_m) {
-  return "  hand: {mass_kg: 100, stiffness_n_per_m: 1.0e+5, viscosity_n_s_per_m: 6300, start_m: "
-         "0,\n"
-         "         moves: [{at_s: 0.3, in_s: 0.05, to_m: " +
-         number(way_m) + "}],\n         finger: {stiffness_n_per_m: " +
-         number(kappa * kMass / (kPeriod * kPeriod)) + ", viscosity_n_s_per_m: 0, holds: true}}\n";
+  return filled(
+      R"(  hand: {mass_kg: 100, stiffness_n_per_m: 1.0e+5, viscosity_n_s_per_m: 6300, start_m: 0,
+         moves: [{at_s: 0.3, in_s: 0.05, to_m: <way_m>}],
+         finger: {stiffness_n_per_m: <stiffness_n_per_m>, viscosity_n_s_per_m: 0, holds: true}}
+)",
+      {{"way_m", number(way_m)},
+       {"stiffness_n_per_m", number(kappa * kMass / (kPeriod * kPeriod))}});
 }
 
 Swing swing_in_role_liaison(const std::string& key) {
@@ -253,8 +258,9 @@ mock:
 
 TEST(AnswerDelay, AKeyTooWeakForAnAnswerAPeriodLateIsPlayedOnceItsAnswersAreMeasuredFaster) {
   LiveSession session("realtime",
-                      "  sim: {node: sim_node, scene: scene.yaml}\n"
-                      "  keyboard: {node: device_node, device: key.yaml}\n");
+                      R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, device: key.yaml}
+)");
   session.add_file("scene.yaml", kSlowWall);
   session.add_file("key.yaml", kSlowKey);
   dds::Reader<msg::GestureForces> forces(session.participant(), dds::Topic::kForces);

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "tests/support/filled.h"
+
 namespace cordis::test {
 
 /// A key of role mass that a spring holds at its rest: force = -stiffness x position.
@@ -57,11 +59,14 @@ script:
 
 /// A scripted key that moves to a position, or pushes with a force, and stays.
 inline std::string steady_key(double position_m, double force_n) {
-  return std::string(kScriptedKey) + R"(    - {at_s: 0, m: 0}
-    - {at_s: 0.2, m: )" +
-         std::to_string(position_m) +
-         "}\n  forces:\n    - {at_s: 0, n: 0}\n    - {at_s: 0.2, n: " + std::to_string(force_n) +
-         "}\n";
+  return std::string(kScriptedKey) +
+         filled(R"(    - {at_s: 0, m: 0}
+    - {at_s: 0.2, m: <position_m>}
+  forces:
+    - {at_s: 0, n: 0}
+    - {at_s: 0.2, n: <force_n>}
+)",
+                {{"position_m", std::to_string(position_m)}, {"force_n", std::to_string(force_n)}});
 }
 
 inline const char* const kSimAndKey =

@@ -149,7 +149,13 @@ TEST_F(TakeVerbs, EchoPrintsMessagesByTheTypesThatTheTakeDescribes) {
   const Answer yaml = cordis({"echo", lab, "lab/count"});
   EXPECT_EQ(yaml.code, 0) << yaml.error;
   EXPECT_EQ(yaml.out,
-            "topic: lab/count\ntime_s: 1.500000000\nsequence: 5\nmessage:\n  number: 7\n---\n");
+            R"(topic: lab/count
+time_s: 1.500000000
+sequence: 5
+message:
+  number: 7
+---
+)");
   EXPECT_EQ(yaml.error, "");
   const Answer line = cordis({"echo", lab, "lab/c*", "--format", "ndjson"});
   EXPECT_EQ(line.out,

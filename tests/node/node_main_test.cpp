@@ -99,7 +99,10 @@ TEST(NodeMain, PrintsTextsOfFilesWithoutEscapeCodes) {
   ::testing::internal::CaptureStderr();
   EXPECT_EQ(run_main({file.path(), "--name", "left"}, "device_node", warn_and_fail), 1);
   EXPECT_EQ(run_main({file.path(), "--name", "l\x1b[2Jeft"}, "device_node"), 2);
-  const LaunchFile broken("cordis: 1\nsession: t\nnodes: {sim: {node: \"\\e[2J\"}}\n");
+  const LaunchFile broken(R"(cordis: 1
+session: t
+nodes: {sim: {node: "\e[2J"}}
+)");
   EXPECT_EQ(run_main({broken.path()}, "sim_node"), 2);
 
   const std::string seen = ::testing::internal::GetCapturedStderr();

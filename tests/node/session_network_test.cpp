@@ -65,8 +65,11 @@ TEST(SessionNetwork, RefusesAnAddressOfAnotherHost) {
 TEST(SessionNetwork, NeedsADomain) {
   config::Problems problems;
   const config::Launch launch = config::load_launch_text(
-      "cordis: 1\nnetwork: {peers: [203.0.113.8]}\nnodes: {sim: {node: sim_node}}\n", "l.yaml", {},
-      problems);
+      R"(cordis: 1
+network: {peers: [203.0.113.8]}
+nodes: {sim: {node: sim_node}}
+)",
+      "l.yaml", {}, problems);
   EXPECT_EQ(problems.text(), "") << "who looks for a session has its domain from the registry";
 
   config::check_domain(launch, problems);

@@ -46,11 +46,12 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
-           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ +
-           "signals:\n  lively: {quantity: kinetic_energy}\n"
-           "  middle: {of: p, quantity: center_of_mass, axis: x}\n"
-           "  fastest: {of: p, quantity: speed, take: largest}\n"
-           "  thrust: {of: p, quantity: force, axis: x, take: sum}\n";
+           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
+  lively: {quantity: kinetic_energy}
+  middle: {of: p, quantity: center_of_mass, axis: x}
+  fastest: {of: p, quantity: speed, take: largest}
+  thrust: {of: p, quantity: force, axis: x, take: sum}
+)";
   }
 
  private:
@@ -86,10 +87,13 @@ class SceneWriter {
     }
     freezes_ = integrator == "cordis" && chance(0.1);
     may_rub_ = integrator == "cordis" && !freezes_ && space_ > 1;
-    head_ =
-        fmt::format("cordis: 1\nname: chance\nspace: {}\nstep: {{rate_hz: {}, integrator: {}{}}}\n",
-                    space_, one_of({1000, 2000, 5000, 20000, 44000}), integrator,
-                    freezes_ ? ", freeze: {tolerance_m: 1.0e-5}" : "");
+    head_ = fmt::format(R"(cordis: 1
+name: chance
+space: {}
+step: {{rate_hz: {}, integrator: {}{}}}
+)",
+                        space_, one_of({1000, 2000, 5000, 20000, 44000}), integrator,
+                        freezes_ ? ", freeze: {tolerance_m: 1.0e-5}" : "");
   }
 
   std::string world() {

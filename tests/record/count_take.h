@@ -30,11 +30,13 @@ inline void write_count_take(const std::filesystem::path& path) {
   config.chunk_bytes = 200;
   mcap::Writer writer(path, config);
   const std::uint16_t schema = writer.add_schema({0, "lab::Count", "omgidl", kCountIdl});
-  const std::uint16_t channel = writer.add_channel(
-      {.schema_id = schema,
-       .topic = "lab/count",
-       .message_encoding = "cdr",
-       .metadata = {{"qos", "reliability: true\ndurability: false\nownership: false\n"}}});
+  const std::uint16_t channel = writer.add_channel({.schema_id = schema,
+                                                    .topic = "lab/count",
+                                                    .message_encoding = "cdr",
+                                                    .metadata = {{"qos", R"(reliability: true
+durability: false
+ownership: false
+)"}}});
   ASSERT_EQ(writer.add_metadata({"cordis.session", {{"session", "count"}}}),
             mcap::WriteStatus::kOk);
   for (std::uint32_t number = 0; number < kCounted; ++number) {

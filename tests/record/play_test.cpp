@@ -221,11 +221,13 @@ TEST(PlayOfAnOldTake, LeavesOutItsViewersByTheSchemaThatItHolds) {
   mcap::Writer writer(take, {});
   const std::uint16_t schema =
       writer.add_schema({0, "cordis::msg::NodeStatus", "omgidl", kOldStatus});
-  const std::uint16_t channel = writer.add_channel(
-      {.schema_id = schema,
-       .topic = "node/status",
-       .message_encoding = "cdr",
-       .metadata = {{"qos", "reliability: true\ndurability: true\nownership: false\n"}}});
+  const std::uint16_t channel = writer.add_channel({.schema_id = schema,
+                                                    .topic = "node/status",
+                                                    .message_encoding = "cdr",
+                                                    .metadata = {{"qos", R"(reliability: true
+durability: true
+ownership: false
+)"}}});
   ASSERT_EQ(writer.add_metadata({"cordis.session", {{"session", "old"}, {"wire_version", "2"}}}),
             mcap::WriteStatus::kOk);
   for (std::uint8_t kind = 0; kind < 4; ++kind) {

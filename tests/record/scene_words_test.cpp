@@ -81,13 +81,18 @@ TEST(SceneWords, NameThePlanOfEachSceneThatBegins) {
 
 TEST(AboutSession, NamesEachSeedThatAFileOrAWordSets) {
   const mcap::TakeFolder folder;
-  std::ofstream(folder / "launch.yaml") << "cordis: 1\nnodes:\n"
-                                           "  sim: {node: sim_node, scene: gravel.yaml}\n"
-                                           "  hand: {node: device_node, device: hand.yaml}\n";
-  std::ofstream(folder / "gravel.yaml") << "cordis: 1\nname: gravel\nmatter:\n"
-                                           "  grains: {kind: pack, seed: 7}\n"
-                                           "  dust: {kind: pack}\n"
-                                           "events: [{seed: 3}, {seed: 4}]\n";
+  std::ofstream(folder / "launch.yaml") << R"(cordis: 1
+nodes:
+  sim: {node: sim_node, scene: gravel.yaml}
+  hand: {node: device_node, device: hand.yaml}
+)";
+  std::ofstream(folder / "gravel.yaml") << R"(cordis: 1
+name: gravel
+matter:
+  grains: {kind: pack, seed: 7}
+  dust: {kind: pack}
+events: [{seed: 3}, {seed: 4}]
+)";
   std::ofstream(folder / "hand.yaml") << "cordis: 1\nmock: {seed: 5}\n";
   config::Problems problems;
   const config::Launch launch =

@@ -1,5 +1,6 @@
 // tests/reduction/series_test.cpp
 #include "tests/reduction/scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::plan {
 namespace {
@@ -7,19 +8,24 @@ namespace {
 /// A bob on a row of links in 1 dimension, with a MAT of this mass between each two.
 std::string row_text(const std::string& mass, const std::string& links, double rate_hz,
                      const std::string& head = "reduce: [series]\n") {
-  return "cordis: 1\nspace: 1\nstep: {rate_hz: " + std::to_string(rate_hz) + "}\n" + head +
-         R"(liaisons:
+  return test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: <rate_hz>}
+)",
+                      {{"rate_hz", std::to_string(rate_hz)}}) +
+         head +
+         test::filled(R"(liaisons:
   soft: {kind: spring, stiffness_n_per_m: 60}
   hard: {kind: spring, stiffness_n_per_m: 120}
   oil: {kind: damper, viscosity_n_s_per_m: 0.8}
 matter:
   wall: {kind: fixed, at_m: 0}
-  joint: {kind: mass, mass_kg: )" +
-         mass +
-         R"(, at_m: [0, 0]}
+  joint: {kind: mass, mass_kg: <mass>, at_m: [0, 0]}
   bob: {kind: mass, mass_kg: 0.1, at_m: 0, velocity_m_per_s: 0.5}
 links:
-)" + links;
+)",
+                      {{"mass", mass}}) +
+         links;
 }
 
 const std::string kSprings =

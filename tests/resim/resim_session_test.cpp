@@ -163,8 +163,10 @@ TEST_P(ResimCommands, AtAnyTimeAreRepeated) {
   session.live().add_file("scene.yaml", touched);
   session.live().add_file("other.yaml", wall_scene(300.0));
   session.live().add_file("key.yaml", std::string(kScriptedKey) +
-                                          "    - {at_s: 0, m: 0}\n    - {at_s: 0.3, m: -0.01}\n"
-                                          "    - {at_s: 0.6, m: -0.002}\n");
+                                          R"(    - {at_s: 0, m: 0}
+    - {at_s: 0.3, m: -0.01}
+    - {at_s: 0.6, m: -0.002}
+)");
   if (has_devices) session.live().start("device_node", "keyboard");
   session.live().start("sim_node", "sim");
   ASSERT_TRUE(session.status().wait_for_phase("sim", msg::PHASE_RUNNING));

@@ -429,9 +429,12 @@ TEST(Resim, ComparesAnotherModelUnderTheSameHand) {
 TEST(Resim, RefusesASceneOfAnotherGestureRate) {
   const mcap::TakeFolder folder;
   const std::string scene = (folder / "slow.yaml").string();
-  std::ofstream(scene) << "cordis: 1\nname: slow\nspace: 1\n"
-                          "step: {rate_hz: 1000, gesture_rate_hz: 500}\n"
-                          "matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}\n";
+  std::ofstream(scene) << R"(cordis: 1
+name: slow
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 500}
+matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}
+)";
   ResimOptions options;
   options.take = kGolden + "realtime_key.mcap";
   options.scene_file = scene;
@@ -457,8 +460,11 @@ TEST(Resim, AHandThatIsReplayedGivesTheStateOfTheTake) {
   scene.replace(rate, 13, "rate_hz: 4000");  // as the take was recorded
   std::ofstream(folder / "scene.yaml") << scene;
   std::ofstream(folder / "launch.yaml")
-      << "cordis: 1\nclock: lockstep\nnodes:\n  sim: {node: sim_node, scene: scene.yaml}\n  "
-         "thimbles: {node: device_node, device: '"
+      << R"(cordis: 1
+clock: lockstep
+nodes:
+  sim: {node: sim_node, scene: scene.yaml}
+  thimbles: {node: device_node, device: ')"
       << configs << "devices/two_thimbles.yaml', driver: replay, replay: {take: '" << take
       << "'}}\n";
   OfflineSession session((folder / "launch.yaml").string());

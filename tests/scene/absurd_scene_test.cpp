@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -39,9 +40,12 @@ TEST(AbsurdScene, OfAnEndlessNameIsRefused) {
 
 TEST(AbsurdScene, OfParametersInAnEndlessRowIsRefused) {
   const auto scene = [](int count) {
-    return "liaisons:\n  l:\n    kind: spring\n    stiffness_n_per_m: p0\n    parameters:\n" +
-           repeated(count,
-                    [](auto i, auto next) { return "      p" + i + ": 2 * p" + next + "\n"; }) +
+    return R"(liaisons:
+  l:
+    kind: spring
+    stiffness_n_per_m: p0
+    parameters:
+)" + repeated(count, [](auto i, auto next) { return "      p" + i + ": 2 * p" + next + "\n"; }) +
            "      p" + std::to_string(count) + ": 1\n" + kBob;
   };
   EXPECT_EQ(problems_in(scene(64)), "");
@@ -61,11 +65,12 @@ TEST(AbsurdScene, OfLiaisonsInParallelWithinEachOtherWithoutEndIsRefused) {
 }
 
 TEST(AbsurdScene, OfTooManyExitsIsRefused) {
-  EXPECT_EQ(problems_in("liaisons:\n  l:\n    states:\n      x:\n        exits:\n" +
-                        repeated(1001,
-                                 [](auto i, auto) {
-                                   return "          - {to: x, when: age_s > " + i + "}\n";
-                                 }) +
+  EXPECT_EQ(problems_in(R"(liaisons:
+  l:
+    states:
+      x:
+        exits:
+)" + repeated(1001, [](auto i, auto) { return "          - {to: x, when: age_s > " + i + "}\n"; }) +
                         kBob),
             "liaison 'l' has more than 1000 exits");
 }
@@ -87,28 +92,33 @@ TEST(AbsurdScene, OfManyWrongNamesIsReportedUpToAHundredOfThem) {
 }
 
 TEST(AbsurdScene, OfPartsThatDoubleWithoutEndIsRefused) {
-  EXPECT_EQ(
-      problems_in(
-          "parts:\n  p0: {matter: {m: {kind: lattice, structure: square, corner_m: [0, 0], counts: "
-          "[100, 100], mass_kg: 1, spacing_m: 1}}}\n" +
-          repeated(40,
-                   [](auto i, auto next) {
-                     return "  p" + next + ": {matter: {a: {part: p" + i + "}, b: {part: p" + i +
-                            "}}}\n";
-                   }) +
-          "matter:\n  z: {part: p40}\n"),
-      "the scene has more than 1000000 MATs or 8000000 links");
+  EXPECT_EQ(problems_in(
+                R"(parts:
+  p0: {matter: {m: {kind: lattice, structure: square, corner_m: [0, 0], counts: [100, 100],
+                    mass_kg: 1, spacing_m: 1}}}
+)" +
+                repeated(40,
+                         [](auto i, auto next) {
+                           return "  p" + next + ": {matter: {a: {part: p" + i + "}, b: {part: p" +
+                                  i + "}}}\n";
+                         }) +
+                R"(matter:
+  z: {part: p40}
+)"),
+            "the scene has more than 1000000 MATs or 8000000 links");
 }
 
 // Without the bound each of these would add a million times a million copies.
 TEST(AbsurdScene, OfPartsRepeatedWithinEachOtherIsRefused) {
-  const std::string nested =
-      repeated(12,
-               [](auto i, auto next) {
-                 return "  p" + next + ": {matter: {m: {part: p" + i +
-                        ", repeat: {count: 1000, translate_m: [1, 0]}}}}\n";
-               }) +
-      "matter:\n  z: {part: p12}\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n";
+  const std::string nested = repeated(12,
+                                      [](auto i, auto next) {
+                                        return "  p" + next + ": {matter: {m: {part: p" + i +
+                                               ", repeat: {count: 1000, translate_m: [1, 0]}}}}\n";
+                                      }) +
+                             R"(matter:
+  z: {part: p12}
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)";
   EXPECT_EQ(problems_in("parts:\n  p0: {links: []}\n" + nested),
             "missing key 'matter' in part 'p0'");
   EXPECT_EQ(problems_in("parts:\n  p0: {matter: {m: {kind: fixed, at_m: [0, 0]}}}\n" + nested),
@@ -128,10 +138,13 @@ TEST(AbsurdScene, OfPartsInAnEndlessRowIsRefused) {
 TEST(AbsurdScene, OfLongPartsInManyCopiesIsRefused) {
   const std::string parameters =
       repeated(2000, [](auto i, auto) { return ", a" + i + ": [1, 2, 3]"; });
-  EXPECT_EQ(problems_in("parts:\n  p: {parameters: {b: 1" + parameters +
-                        "}, matter: {m: {kind: fixed, at_m: [0, 0]}}}\n" +
-                        "  q: {matter: {m: {part: p}}}\n" +
-                        "matter:\n  z: {part: q, repeat: {count: 40000}}\n"),
+  EXPECT_EQ(problems_in(test::filled(R"(parts:
+  p: {parameters: {b: 1<parameters>}, matter: {m: {kind: fixed, at_m: [0, 0]}}}
+  q: {matter: {m: {part: p}}}
+matter:
+  z: {part: q, repeat: {count: 40000}}
+)",
+                                     {{"parameters", parameters}})),
             "the parts of the scene put more than 10000000 values into it");
 }
 
@@ -147,9 +160,12 @@ std::string square_of(int side) {
 TEST(AbsurdScene, OfASetInWhichAllAreNearAllIsRefusedAtItsRange) {
   config::Problems problems;
   load_scene_text(scene_head(2) + kContact + square_of(1000) +
-                      "links:\n  - {liaison: t, within: s, rest_m: 1, range_m: 2000}\n"
-                      "  - {liaison: t, within: s, rest_m: 1, range_m: 3000, name: other}\n"
-                      "signals:\n  b: {of: other, quantity: bonds}\n",
+                      R"(links:
+  - {liaison: t, within: s, rest_m: 1, range_m: 2000}
+  - {liaison: t, within: s, rest_m: 1, range_m: 3000, name: other}
+signals:
+  b: {of: other, quantity: bonds}
+)",
                   "t", problems);
   ASSERT_EQ(problems.in_order().size(), 1u) << problems.text();
   const config::Problem problem = problems.in_order()[0];
@@ -166,11 +182,14 @@ TEST(AbsurdScene, OfASetInWhichAllAreNearAllIsRefusedAtItsRange) {
 TEST(AbsurdScene, OfSetsThatAreNearlyInRangeOfEachOtherIsRefused) {
   // 40,000 masses in two heaps, none of the one in range of the other
   const std::string heap = ", structure: square, counts: [200, 100], mass_kg: 1, spacing_m: 0.0001";
-  EXPECT_EQ(problems_in(kContact + "matter:\n  p: {kind: lattice, corner_m: [0, 0]" + heap +
-                        "}\n  q: {kind: lattice, corner_m: [1.2, 0]" + heap +
-                        "}\nlinks:\n"
-                        "  - {liaison: t, between_sets: [p, q], rest_m: 1, range_m: 1}\n"
-                        "  - {liaison: t, between_sets: [q, p], rest_m: 1, range_m: 1}\n"),
+  EXPECT_EQ(problems_in(kContact + test::filled(R"(matter:
+  p: {kind: lattice, corner_m: [0, 0]<heap>}
+  q: {kind: lattice, corner_m: [1.2, 0]<heap>}
+links:
+  - {liaison: t, between_sets: [p, q], rest_m: 1, range_m: 1}
+  - {liaison: t, between_sets: [q, p], rest_m: 1, range_m: 1}
+)",
+                                                {{"heap", heap}})),
             "the sets of the scene have more than 8000000 pairs of MATs in or near their range at "
             "the start");
 }

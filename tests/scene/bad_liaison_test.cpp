@@ -6,8 +6,11 @@ namespace {
 
 /// A scene of two MATs with these liaisons and these links.
 std::string scene_of(const std::string& liaisons, const std::string& links = {}) {
-  return "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}\nliaisons:\n" +
-         liaisons + (links.empty() ? "" : "links:\n" + links);
+  return R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}
+liaisons:
+)" + liaisons +
+         (links.empty() ? "" : "links:\n" + links);
 }
 
 struct BadLiaison {
@@ -93,7 +96,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// A liaison with these states.
 std::string states(const std::string& text) {
-  return scene_of("  l:\n    parameters: {hold_m: 1}\n    states:\n" + text);
+  return scene_of(R"(  l:
+    parameters: {hold_m: 1}
+    states:
+)" + text);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -132,7 +138,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "did you mean 'stiffness_n_per_m'?"},
         BadLiaison{states("      x: {force_limit_n: ^0}\n"),
                    "'force_limit_n' in state 'x' of liaison 'l' must be > 0, got 0", ""},
-        BadLiaison{scene_of("  l:\n    start: ^yy\n    states: {x: {}}\n"),
+        BadLiaison{scene_of(R"(  l:
+    start: ^yy
+    states: {x: {}}
+)"),
                    "'start' in liaison 'l' must be one of x, got 'yy'", ""},
         BadLiaison{scene_of("  l: {states: ^{}}\n"), "'states' in liaison 'l' must not be empty",
                    ""},
@@ -156,7 +165,10 @@ INSTANTIATE_TEST_SUITE_P(
       yy: {}
 )"),
             "this condition of liaison 'l' never holds", ""},
-        BadLiaison{scene_of("  l:\n    parameters: {hold_m: ^1}\n    states: {x: {}}\n"),
+        BadLiaison{scene_of(R"(  l:
+    parameters: {hold_m: ^1}
+    states: {x: {}}
+)"),
                    "parameter 'hold_m' of liaison 'l' is used nowhere", ""},
         // the bow of the paper: at the moment of release both ends still move alike
         BadLiaison{

@@ -106,8 +106,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "'tension_n' in matter 'a' asks for a negative rest length",
                  "with this stiffness and these distances it is at most 5 N"},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "stiffness_n_per_m: 10, tension_n: ^1, rest_m: 1}\n",
+                 R"(matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 10,
+      tension_n: ^1, rest_m: 1}
+)",
                  "either 'tension_n' or 'rest_m' can be given in matter 'a'", ""},
         BadScene{kHead2,
                  R"(matter:
@@ -190,8 +192,10 @@ matter:
                  "between rows",
                  ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], "
-                 "spacing_m: 1, stiffness_n_per_m: 1, border: ^none}\n",
+                 R"(matter:
+  a: {kind: grid, rows: 2, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: 1,
+      stiffness_n_per_m: 1, border: ^none}
+)",
                  "'border' in matter 'a' must be one of free, fixed, corners, got 'none'", ""},
         BadScene{kHead1, "matter:\n  a: {kind: mass, mass_kg: 1, at_m: 0, layout_at_m: ^1}\n",
                  "'layout_at_m' in matter 'a' must have 2 numbers, got 1", ""},
@@ -262,8 +266,10 @@ INSTANTIATE_TEST_SUITE_P(
 )",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: "
-                 "[1e4, 1e4]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, region: ^{from_m: [0, 0], to_m: [1e4, 1e4]},
+      ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "matter 'a' has more than 1000000 MATs", ""},
         BadScene{kHead2,
                  R"(matter:
@@ -271,8 +277,10 @@ INSTANTIATE_TEST_SUITE_P(
 )",
                  "no ball of matter 'a' fits into it", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: lattice, structure: square, counts: ^[1, 1], region: "
-                 "{from_m: [0, 0], to_m: [1, 1]}, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: {kind: lattice, structure: square, counts: ^[1, 1], region: {from_m: [0, 0], to_m: [1, 1]},
+      ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "either 'region' or 'counts' can be given in matter 'a'", ""},
         BadScene{kHead2,
                  R"(matter:
@@ -280,8 +288,10 @@ INSTANTIATE_TEST_SUITE_P(
 )",
                  "missing key 'from_m' in 'region' of matter 'a'", ""},
         BadScene{kHead2,
-                 "matter:\n  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, "
-                 "2], viscosity_n_s_per_m: 1, ball: {mass_kg: 1, radius_m: 0.1}}\n",
+                 R"(matter:
+  a: ^{kind: lattice, structure: square, corner_m: [0, 0], counts: [2, 2], viscosity_n_s_per_m: 1,
+       ball: {mass_kg: 1, radius_m: 0.1}}
+)",
                  "missing key 'stiffness_n_per_m' in matter 'a'", ""}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -356,8 +366,10 @@ INSTANTIATE_TEST_SUITE_P(
 )",
                  "no ball of matter 'a' fits into it", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: 1, "
-                 "spacing_m: 0.1, mass_kg: 1, shear_stiffness_n_per_m: ^1}\n",
+                 R"(matter:
+  a: {kind: disc, structure: rings, center_m: [0, 0], radius_m: 1, spacing_m: 0.1, mass_kg: 1,
+      shear_stiffness_n_per_m: ^1}
+)",
                  "a disc of rings has no second neighbours that could be joined", ""},
         BadScene{kHead3,
                  R"(matter:

@@ -14,23 +14,39 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kNothing, "^", "scene must be a mapping of keys, got nothing", ""},
         BadScene{kNothing, "^[1]\n", "scene must be a mapping of keys, got a sequence", ""},
         BadScene{kNothing,
-                 "cordis: 1\nsession: s\n^nodes:\n  sim: {node: sim_node, scene: s/a.yaml}\n",
+                 R"(cordis: 1
+session: s
+^nodes:
+  sim: {node: sim_node, scene: s/a.yaml}
+)",
                  "this is a launch file, and a scene is wanted",
                  "its scene is s/a.yaml, from the folder of this file"},
-        BadScene{kNothing, "cordis: 1\nname: keys\n^axes: 1\ntravel_m: 0.04\nstrange: 3\n",
+        BadScene{kNothing, R"(cordis: 1
+name: keys
+^axes: 1
+travel_m: 0.04
+strange: 3
+)",
                  "this is a device file, and a scene is wanted",
                  "a launch file names it: {node: device_node, device: FILE.yaml}"},
-        BadScene{kNothing, "cordis: 1\nliaisons: {}\n^parts: {}\n",
+        BadScene{kNothing, R"(cordis: 1
+liaisons: {}
+^parts: {}
+)",
                  "this is a file of parts, and a scene is wanted",
                  "a scene takes them in: parts: {include: ...}"},
-        BadScene{
-            kNothing,
-            "^space: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
-            "missing key 'cordis' in scene", ""},
-        BadScene{
-            kNothing,
-            "^cordis: 1\nstep: {rate_hz: 1000}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
-            "missing key 'space' in scene", ""},
+        BadScene{kNothing,
+                 R"(^space: 1
+step: {rate_hz: 1000}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
+                 "missing key 'cordis' in scene", ""},
+        BadScene{kNothing,
+                 R"(^cordis: 1
+step: {rate_hz: 1000}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
+                 "missing key 'space' in scene", ""},
         BadScene{kNothing,
                  R"(cordis: 1
 space: ^4
@@ -38,7 +54,10 @@ step: {rate_hz: 1000}
 matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
 )",
                  "'space' in scene must be between 1 and 3, got 4", ""},
-        BadScene{kNothing, "^cordis: 1\nspace: 1\nmatter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\n",
+        BadScene{kNothing, R"(^cordis: 1
+space: 1
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "missing key 'step' in scene", ""},
         BadScene{kNothing,
                  R"(cordis: 1
@@ -87,9 +106,12 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
                  "'euler'",
                  ""},
         BadScene{kNothing,
-                 "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: ^symplectic4}\nmatter: "
-                 "{s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, "
-                 "viscosity_n_s_per_m: 1, ends: fixed}}\n",
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: ^symplectic4}
+matter: {s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, viscosity_n_s_per_m: 1,
+             ends: fixed}}
+)",
                  "the integrator symplectic4 does not take viscosity, which s.links[0] has",
                  "s.links[0] stands at t:4"},
         BadScene{kHead1, "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {^viscosity: 1}\n",
@@ -121,10 +143,12 @@ ports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0], coupling: direct}}
 INSTANTIATE_TEST_SUITE_P(
     Liaisons, BadScenes,
     testing::Values(
-        BadScene{
-            kHead1,
-            "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: ^{kind: spring}\n",
-            "missing key 'stiffness_n_per_m' in liaison 's'", ""},
+        BadScene{kHead1,
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: ^{kind: spring}
+)",
+                 "missing key 'stiffness_n_per_m' in liaison 's'", ""},
         BadScene{kHead1,
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
 liaisons:
@@ -138,7 +162,10 @@ liaisons:
 )",
                  "missing key 'kind' in liaison 's'", ""},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  s: {kind: ^sprng}\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: {kind: ^sprng}
+)",
                  "'kind' in liaison 's' must be one of spring, damper, spring_damper, maxwell, "
                  "state_machine, parallel, bending, got 'sprng'",
                  "did you mean 'spring'?"},
@@ -163,7 +190,10 @@ liaisons:
             "unknown key 'colour' in liaison 's'",
             "known keys: kind, parameters, stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest"},
         BadScene{kHead1,
-                 "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nliaisons:\n  include: [^[x]]\n",
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  include: [^[x]]
+)",
                  "'include' must be the path of a file, got a sequence", ""},
         BadScene{kHead2,
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/scene/bad_scene.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -128,10 +129,13 @@ matter:
 TEST(Bends, OfARingWithTheAngleOfItsCornersAreAtRest) {
   const double corner = 2.0 * std::numbers::pi / 8.0;
   const Scene scene = sound_scene(
-      2, "liaisons: {hoop: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: " +
-             config::number_text(corner) +
-             "}}\nmatter: {loop: {kind: ring, count: 8, mass_kg: 1, center_m: [0, 0], "
-             "radius_m: 1, stiffness_n_per_m: 1}}\nlinks: [{liaison: hoop, along: loop}]\n");
+      2, test::filled(
+             R"(liaisons: {hoop: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: <corner>}}
+matter: {loop: {kind: ring, count: 8, mass_kg: 1, center_m: [0, 0], radius_m: 1,
+                stiffness_n_per_m: 1}}
+links: [{liaison: hoop, along: loop}]
+)",
+             {{"corner", config::number_text(corner)}}));
   engine::World world(std::make_shared<const engine::Network>(scene.network));
   world.step();
   for (std::uint32_t i = 0; i < 8; ++i) EXPECT_LT(world.link_force(i).norm(), 1e-12);
@@ -144,46 +148,48 @@ TEST_P(BadBends, HaveOneProblemAtItsPlace) {
 }
 
 constexpr const char* kSteel =
-    "liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1}, s: {kind: spring, "
-    "stiffness_n_per_m: 1}}\n"
-    "matter: {a: {kind: points, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0], [2, 0]]}, one: {kind: "
-    "mass, mass_kg: 1, "
-    "at_m: [5, 5]}, floor: {kind: plane, at_m: [0, -9], normal: y}}\n";
+    R"(liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1},
+           s: {kind: spring, stiffness_n_per_m: 1}}
+matter: {a: {kind: points, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0], [2, 0]]},
+         one: {kind: mass, mass_kg: 1, at_m: [5, 5]},
+         floor: {kind: plane, at_m: [0, -9], normal: y}}
+)";
 
 INSTANTIATE_TEST_SUITE_P(
     Bends, BadBends,
     testing::Values(
         BadScene{kHead2,
-                 "liaisons: {b: ^{kind: bending}}\nmatter: {a: {kind: mass, mass_kg: 1, at_m: [0, "
-                 "0]}}\n",
+                 R"(liaisons: {b: ^{kind: bending}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "missing key 'stiffness_n_m_per_rad' in liaison 'b'", ""},
         BadScene{kHead2,
-                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, states: ^{}}}\nmatter: "
-                 "{a: {kind: mass, "
-                 "mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, states: ^{}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "a bending liaison has no states: its law is linear", ""},
         BadScene{kHead3,
-                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: ^1}}\nmatter: "
-                 "{a: {kind: "
-                 "mass, mass_kg: 1, at_m: [0, 0, 0]}}\n",
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: ^1}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}}
+)",
                  "in 3 dimensions a bend has no sign, so the rest of liaison 'b' is straight",
                  "a spring between the two ends holds an angle"},
         BadScene{kHead1,
-                 "liaisons: {b: {kind: ^bending, stiffness_n_m_per_rad: 1}}\nmatter: {a: {kind: "
-                 "mass, mass_kg: 1, "
-                 "at_m: 0}}\n",
+                 R"(liaisons: {b: {kind: ^bending, stiffness_n_m_per_rad: 1}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
                  "in 1 dimension liaison 'b' needs a 'length_m'",
                  "MATs move across the line on which they stand, so its length is not known"},
         BadScene{kHead2,
-                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}, p: {parallel: "
-                 "[^b]}}\nmatter: {a: {kind: "
-                 "mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}, p: {parallel: [^b]}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "a bending liaison joins three MATs, so it stands in no 'parallel'",
                  "write a link of its own with it"},
         BadScene{kHead2,
-                 "liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}}\nmatter: {a: {kind: "
-                 "string, count: 3, mass_kg: "
-                 "1, from_m: [0, 0], to_m: [1, 0], liaison: ^b}}\n",
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1}}
+matter: {a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: ^b}}
+)",
                  "a bending liaison joins three MATs, not two neighbours",
                  "write a link with it: along: matter"}));
 
@@ -219,7 +225,7 @@ TEST(Bends, SayWhatIsWrongWithALink) {
     load_scene_text(scene_head(2) + kSteel + "links:\n  - " + bad.link + "\n", "t", problems);
     ASSERT_FALSE(problems.all().empty()) << bad.link;
     EXPECT_EQ(problems.in_order()[0].message, bad.message) << bad.link;
-    EXPECT_EQ(problems.in_order()[0].place.line, 7) << bad.link;
+    EXPECT_EQ(problems.in_order()[0].place.line, 10) << bad.link;
   }
 }
 
@@ -227,13 +233,19 @@ TEST(Bends, SayWhatIsWrongWithALink) {
 TEST(Bends, OfALiaisonWithAMistakeHaveNoOtherProblem) {
   for (const char* const mistake : {"rest_rad: 120", "length_m: 0"}) {
     config::Problems problems;
-    load_scene_text(
-        "cordis: 1\nname: t\nspace: 2\nstep: {rate_hz: 20000}\nliaisons:\n"
-        "  b: {kind: bending, stiffness_n_m_per_rad: 0.05, " +
-            std::string(mistake) +
-            "}\nmatter:\n  q: {kind: points, at_m: [[0, 0], [1, 0], [2, 0]], mass_kg: 1}\n"
-            "links:\n  - {liaison: b, between: [\"q[0]\", \"q[1]\", \"q[2]\"]}\n",
-        "t", problems);
+    load_scene_text(test::filled(R"(cordis: 1
+name: t
+space: 2
+step: {rate_hz: 20000}
+liaisons:
+  b: {kind: bending, stiffness_n_m_per_rad: 0.05, <mistake>}
+matter:
+  q: {kind: points, at_m: [[0, 0], [1, 0], [2, 0]], mass_kg: 1}
+links:
+  - {liaison: b, between: ["q[0]", "q[1]", "q[2]"]}
+)",
+                                 {{"mistake", std::string(mistake)}}),
+                    "t", problems);
     EXPECT_EQ(problems.all().size(), 1u) << problems.text();
   }
 }
@@ -241,10 +253,13 @@ TEST(Bends, OfALiaisonWithAMistakeHaveNoOtherProblem) {
 TEST(Bends, NameThemselvesInARefusal) {
   config::Problems problems;
   load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\n"
-      "liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1, length_m: 1}}\n"
-      "matter: {rod: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1}}\n"
-      "links: [{liaison: steel, along: rod}]\n",
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: modal}
+liaisons: {steel: {kind: bending, stiffness_n_m_per_rad: 1, length_m: 1}}
+matter: {rod: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1}}
+links: [{liaison: steel, along: rod}]
+)",
       "t", problems);
   ASSERT_EQ(problems.all().size(), 1u) << problems.text();
   EXPECT_EQ(problems.all()[0].message,

@@ -102,26 +102,30 @@ const std::string kFlag = R"(parts:
 )";
 
 TEST(PartColour, OfAUseIsThatOfMatterWithoutItsOwn) {
-  const Scene scene = sound_scene(
-      2,
-      kFlag + "matter:\n  f: {part: flag, color: red}\n  g: {part: flag, translate_m: [9, 9]}\n");
+  const Scene scene = sound_scene(2, kFlag + R"(matter:
+  f: {part: flag, color: red}
+  g: {part: flag, translate_m: [9, 9]}
+)");
   EXPECT_EQ(colours_of(scene),
             (std::vector<std::optional<Colour>>{kRed, kOrange, std::nullopt, kOrange}));
 }
 
 TEST(PartColour, OfAnInnerUseStandsBeforeThatOfAnOuterOne) {
   const Scene scene = sound_scene(2, kFlag +
-                                         "matter:\n  p: {part: pair, color: teal}\n"
-                                         "  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n");
+                                         R"(matter:
+  p: {part: pair, color: teal}
+  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+)");
   EXPECT_EQ(colours_of(scene),
             (std::vector<std::optional<Colour>>{kTeal, kOrange, kRed, kOrange, std::nullopt}));
 }
 
 TEST(PartColour, MayBeAParameterAndIsThatOfEveryCopy) {
-  const Scene scene =
-      sound_scene(2, kFlag +
-                         "matter:\n  f: {part: flag, parameters: {tip_color: teal}, repeat: "
-                         "{count: 2, translate_m: [1, 0]}, color: teal}\n");
+  const Scene scene = sound_scene(2, kFlag +
+                                         R"(matter:
+  f: {part: flag, parameters: {tip_color: teal}, repeat: {count: 2, translate_m: [1, 0]},
+      color: teal}
+)");
   EXPECT_EQ(colours_of(scene), std::vector<std::optional<Colour>>(4, kTeal));
   EXPECT_EQ(scene.colours.size(), 1u) << "neighbours of one colour are one range";
 }
@@ -165,8 +169,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "a sequence",
                  ""},
         BadScene{kHead3,
-                 "matter:\n  a: {kind: plane, at_m: [0, 0, 0], normal: y, color: ^transparent}\n"
-                 "  b: {kind: mass, mass_kg: 1, at_m: [0, 1, 0]}\n",
+                 R"(matter:
+  a: {kind: plane, at_m: [0, 0, 0], normal: y, color: ^transparent}
+  b: {kind: mass, mass_kg: 1, at_m: [0, 1, 0]}
+)",
                  "'color' in matter 'a' must be a colour: a name of CSS as red, or '#rrggbb', got "
                  "'transparent'",
                  ""}));
@@ -174,8 +180,13 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(BadColour, BehindAnUnquotedHashIsACommentOfYaml) {
   config::Problems problems;
   load_scene_text(scene_head(2) +
-                      "matter:\n  a:\n    kind: mass\n    mass_kg: 1\n    at_m: [0, 0]\n"
-                      "    color: #ff8800\n",
+                      R"(matter:
+  a:
+    kind: mass
+    mass_kg: 1
+    at_m: [0, 0]
+    color: #ff8800
+)",
                   "t", problems);
   EXPECT_NE(problems.text().find("'color' in matter 'a' must be a colour"), std::string::npos)
       << problems.text();

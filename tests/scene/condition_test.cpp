@@ -16,6 +16,7 @@
 #include "sim_node/scene/parameters.h"
 #include "tests/scene/bad_scene.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/filled.h"
 #include "tests/support/test_seed.h"
 
 namespace cordis::scene {
@@ -51,17 +52,18 @@ std::optional<std::uint64_t> first_change(const Scene& scene, World& world, cons
 
 /// A bolt that breaks under a falling weight, and what is asked of it.
 std::string falling(const std::string& liaisons, const std::string& links) {
-  return "world: {gravity_m_per_s2: [0, -9.81]}\n"
-         "liaisons:\n"
-         "  brittle: {states: {whole: {stiffness_n_per_m: 500, exits: [{to: broken, when: "
-         "elongation_m > 0.01}]}, broken: {final: true}}}\n" +
-         liaisons +
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: [[0, 0], [1, 0]]}\n"
-         "  bob: {kind: mass, mass_kg: 1, at_m: [[0, -1], [1, -1]]}\n"
-         "links:\n"
-         "  - {liaison: brittle, between: [\"wall[0]\", \"bob[0]\"], name: bolt}\n" +
-         links;
+  return R"(world: {gravity_m_per_s2: [0, -9.81]}
+liaisons:
+  brittle: {states: {whole: {stiffness_n_per_m: 500,
+                             exits: [{to: broken, when: elongation_m > 0.01}]},
+                     broken: {final: true}}}
+)" + liaisons +
+         R"(matter:
+  wall: {kind: fixed, at_m: [[0, 0], [1, 0]]}
+  bob: {kind: mass, mass_kg: 1, at_m: [[0, -1], [1, -1]]}
+links:
+  - {liaison: brittle, between: ["wall[0]", "bob[0]"], name: bolt}
+)" + links;
 }
 
 /// A liaison that holds until a condition comes true.
@@ -80,8 +82,9 @@ TEST(Variable, TimeLetsGoAtItsStep) {
 
 TEST(Variable, AStateIsSeenOneStepAfterItHasChanged) {
   const std::string links =
-      "  - {liaison: latch, between: [\"wall[1]\", \"bob[1]\"], name: l}\n"
-      "  - {liaison: late, between: [\"wall[1]\", \"bob[1]\"], name: d}\n";
+      R"(  - {liaison: latch, between: ["wall[1]", "bob[1]"], name: l}
+  - {liaison: late, between: ["wall[1]", "bob[1]"], name: d}
+)";
   const Scene scene =
       sound_scene(2, falling(until("latch", "bolt.state == broken") +
                                  until("late", "broken_for > 0.0045 and whole != bolt.state"),
@@ -102,14 +105,19 @@ TEST(Variable, LinksThatAskEachOtherSeeTheStepBefore) {
   // step of the other, both would soon be the same.
   const auto follows = [](const std::string& other, const std::string& start) {
     return "{start: " + start + ", states: {low: {exits: [{to: high, when: " + other +
-           ".state == high}]}, high: {exits: [{to: low, when: " + other + ".state == low}]}}}\n";
+           ".state == high}]}, high: {exits: [{to: low, when: " + other + ".state == low}]}}}";
   };
   const Scene scene = sound_scene(
-      2, "liaisons:\n  l: " + follows("right", "low") + "  r: " + follows("left", "high") +
-             "matter:\n  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-             "links:\n"
-             "  - {liaison: l, between: [\"m[0]\", \"m[1]\"], name: left}\n"
-             "  - {liaison: r, between: [\"m[0]\", \"m[1]\"], name: right}\n");
+      2, test::filled(R"(liaisons:
+  l: <l>
+  r: <r>
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: l, between: ["m[0]", "m[1]"], name: left}
+  - {liaison: r, between: ["m[0]", "m[1]"], name: right}
+)",
+                      {{"l", follows("right", "low")}, {"r", follows("left", "high")}}));
   World world = world_of(scene);
   for (std::uint32_t n = 0; n < 20; ++n) {
     EXPECT_EQ(world.state_of(0), n % 2);
@@ -121,30 +129,30 @@ TEST(Variable, LinksThatAskEachOtherSeeTheStepBefore) {
 
 /// A port, masses and a link of each kind, of which conditions may ask; `watch` has no force.
 std::string many(const std::string& condition) {
-  return "world: {gravity_m_per_s2: [0, -9.81]}\n"
-         "liaisons:\n"
-         "  s: {kind: spring_damper, stiffness_n_per_m: 90, viscosity_n_s_per_m: 0.2}\n"
-         "  m: {kind: maxwell, stiffness_n_per_m: 50, viscosity_n_s_per_m: 2}\n"
-         "  jumps: {states: {a: {stiffness_n_per_m: 40, exits: [{to: b, when: elongation_m > 0.02, "
-         "rest: here}]}, b: {stiffness_n_per_m: 20, exits: [{to: a, when: elongation_m < "
-         "-0.01}]}}}\n"
-         "  watching: {states: {no: {exits: [{to: yes, when: \"" +
-         condition +
-         "\"}]}, yes: {final: true}}}\n"
-         "matter:\n"
-         "  wall: {kind: fixed, at_m: [0, 0]}\n"
-         "  bob: {kind: mass, mass_kg: 0.2, at_m: [[0.3, 0.1], [0.5, 0]]}\n"
-         "ports:\n"
-         "  key: {device: k, axes: [0], role: mass, coupling: direct, at_m: [0.1, 0.2], along: y}\n"
-         "links:\n"
-         "  - {liaison: s, between: [wall, \"bob[0]\"], name: spring}\n"
-         "  - {liaison: m, between: [\"bob[0]\", \"bob[1]\"], name: soft}\n"
-         "  - {liaison: jumps, between: [key, \"bob[1]\"], name: jumper}\n"
-         "  - {liaison: watching, between: [wall, \"bob[0]\"], name: watch}\n"
-         "signals:\n"
-         "  stored: {quantity: elastic_energy}\n"
-         "  push: {of: \"bob[1]\", quantity: force, axis: x}\n"
-         "  changed: {quantity: changes}\n";
+  return test::filled(R"(world: {gravity_m_per_s2: [0, -9.81]}
+liaisons:
+  s: {kind: spring_damper, stiffness_n_per_m: 90, viscosity_n_s_per_m: 0.2}
+  m: {kind: maxwell, stiffness_n_per_m: 50, viscosity_n_s_per_m: 2}
+  jumps: {states: {a: {stiffness_n_per_m: 40,
+                       exits: [{to: b, when: elongation_m > 0.02, rest: here}]},
+                   b: {stiffness_n_per_m: 20, exits: [{to: a, when: elongation_m < -0.01}]}}}
+  watching: {states: {no: {exits: [{to: yes, when: "<condition>"}]}, yes: {final: true}}}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 0.2, at_m: [[0.3, 0.1], [0.5, 0]]}
+ports:
+  key: {device: k, axes: [0], role: mass, coupling: direct, at_m: [0.1, 0.2], along: y}
+links:
+  - {liaison: s, between: [wall, "bob[0]"], name: spring}
+  - {liaison: m, between: ["bob[0]", "bob[1]"], name: soft}
+  - {liaison: jumps, between: [key, "bob[1]"], name: jumper}
+  - {liaison: watching, between: [wall, "bob[0]"], name: watch}
+signals:
+  stored: {quantity: elastic_energy}
+  push: {of: "bob[1]", quantity: force, axis: x}
+  changed: {quantity: changes}
+)",
+                      {{"condition", condition}});
 }
 
 /// A hand that moves the key to and fro.
@@ -252,15 +260,19 @@ TEST(Variable, HasOneHashOnAllWidthsAndOverASnapshot) {
 TEST(Variable, OfChangesIsTheSumOverAllStateMachinesAlsoWhenItIsRestored) {
   const auto ticks = [](const char* every_s) {
     const std::string exit = ", when: age_s > " + std::string(every_s) + "}]}";
-    return "{states: {tick: {exits: [{to: tock" + exit + ", tock: {exits: [{to: tick" + exit +
-           "}}\n";
+    return "{states: {tick: {exits: [{to: tock" + exit + ", tock: {exits: [{to: tick" + exit + "}}";
   };
   const Scene scene =
-      sound_scene(2, "liaisons:\n  slow: " + ticks("0.0065") + "  fast: " + ticks("0.0015") +
-                         "matter:\n  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                         "links:\n"
-                         "  - {liaison: slow, between: [\"m[0]\", \"m[1]\"]}\n"
-                         "  - {liaison: fast, between: [\"m[0]\", \"m[1]\"]}\n");
+      sound_scene(2, test::filled(R"(liaisons:
+  slow: <slow>
+  fast: <fast>
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: slow, between: ["m[0]", "m[1]"]}
+  - {liaison: fast, between: ["m[0]", "m[1]"]}
+)",
+                                  {{"slow", ticks("0.0065")}, {"fast", ticks("0.0015")}}));
   const engine::Variable changes{.quantity = engine::VariableKind::kChanges,
                                  .direction = engine::Vec3::Zero()};
   World world = world_of(scene);
@@ -297,21 +309,21 @@ TEST(Variable, ThatSeveralConditionsAskForIsOne) {
 }
 
 TEST(Variable, OfAPartIsThatOfItsOwnCopyAndThenThatOfTheScene) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n  loose: {states: {on: {stiffness_n_per_m: 1, final: true}, off: {exits: [{to: "
-      "on, "
-      "when: age_s > 9}]}}, start: off}\n" +
-          until("latch", "bolt.state == on and lever.position_x_m > 4") +
-          "parts:\n"
-          "  door:\n"
-          "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
-          "    links:\n"
-          "      - {liaison: loose, between: [\"frame[0]\", \"frame[1]\"], name: bolt}\n"
-          "      - {liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: catch}\n"
-          "matter:\n"
-          "  lever: {kind: fixed, at_m: [5, 0]}\n"
-          "  doors: {part: door, repeat: {count: 3, translate_m: [1, 0]}}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  loose: {states: {on: {stiffness_n_per_m: 1, final: true},
+                   off: {exits: [{to: on, when: age_s > 9}]}}, start: off}
+)" + until("latch", "bolt.state == on and lever.position_x_m > 4") +
+                                      R"(parts:
+  door:
+    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}
+    links:
+      - {liaison: loose, between: ["frame[0]", "frame[1]"], name: bolt}
+      - {liaison: latch, between: ["frame[0]", "frame[1]"], name: catch}
+matter:
+  lever: {kind: fixed, at_m: [5, 0]}
+  doors: {part: door, repeat: {count: 3, translate_m: [1, 0]}}
+)");
   World world = world_of(scene);
   world.force_state(group_of(scene, "doors[1].bolt").first, 0);
   for (int n = 0; n < 3; ++n) world.step();
@@ -322,18 +334,19 @@ TEST(Variable, OfAPartIsThatOfItsOwnCopyAndThenThatOfTheScene) {
 }
 
 TEST(Variable, OfLinksWithoutANameComesAfterWhatTheSceneHasOfThatName) {
-  const Scene scene = sound_scene(
-      2, "liaisons:\n  lever: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}\n" +
-             until("latch", "lever.position_x_m > 4") +
-             "parts:\n"
-             "  door:\n"
-             "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
-             "    links:\n"
-             "      - {liaison: lever, between: [\"frame[0]\", \"frame[1]\"]}\n"
-             "      - {liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: catch}\n"
-             "matter:\n"
-             "  lever: {kind: fixed, at_m: [5, 0]}\n"
-             "  door: {part: door}\n");
+  const Scene scene = sound_scene(2, R"(liaisons:
+  lever: {kind: spring, stiffness_n_per_m: 1, rest_m: 1}
+)" + until("latch", "lever.position_x_m > 4") +
+                                         R"(parts:
+  door:
+    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}
+    links:
+      - {liaison: lever, between: ["frame[0]", "frame[1]"]}
+      - {liaison: latch, between: ["frame[0]", "frame[1]"], name: catch}
+matter:
+  lever: {kind: fixed, at_m: [5, 0]}
+  door: {part: door}
+)");
   World world = world_of(scene);
   for (int n = 0; n < 3; ++n) world.step();
   EXPECT_EQ(world.state_of(group_of(scene, "door.catch").first), 1u);
@@ -343,11 +356,12 @@ TEST(Variable, IsAskedForByAPartOfAParallelLiaisonAndByLinksOfMatter) {
   std::string text =
       falling(until("latch", "bolt.state == broken") + "  both: {parallel: [brittle, latch]}\n",
               "  - {liaison: both, between: [\"wall[1]\", \"bob[1]\"], name: b}\n") +
-      "parts:\n"
-      "  chain:\n"
-      "    matter: {row: {kind: string, count: 3, mass_kg: 1, from_m: [3, 0], to_m: [4, 0], ends: "
-      "fixed, liaison: latch}}\n"
-      "    links: [{liaison: brittle, between: [\"row[0]\", \"row[2]\"], name: bolt}]\n";
+      R"(parts:
+  chain:
+    matter: {row: {kind: string, count: 3, mass_kg: 1, from_m: [3, 0], to_m: [4, 0], ends: fixed,
+                   liaison: latch}}
+    links: [{liaison: brittle, between: ["row[0]", "row[2]"], name: bolt}]
+)";
   text.insert(text.find("links:\n"), "  c: {part: chain}\n");
   const Scene scene = sound_scene(2, text);
   World world = world_of(scene);
@@ -359,12 +373,15 @@ TEST(Variable, IsAskedForByAPartOfAParallelLiaisonAndByLinksOfMatter) {
 }
 
 TEST(Variable, IsAskedForByPairsOfSets) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n  glue: {states: {wet: {exits: [{to: dry, when: time_s > 0.0045}]}, dry: "
-      "{stiffness_n_per_m: 1, final: true}}}\n"
-      "matter:\n  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}\n"
-      "links:\n  - {liaison: glue, within: m, range_m: 1.1, rest_m: 1, name: bonds}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  glue: {states: {wet: {exits: [{to: dry, when: time_s > 0.0045}]},
+                  dry: {stiffness_n_per_m: 1, final: true}}}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}
+links:
+  - {liaison: glue, within: m, range_m: 1.1, rest_m: 1, name: bonds}
+)");
   World world = world_of(scene);
   for (int n = 0; n < 5; ++n) world.step();
   EXPECT_TRUE(world.bound_pairs(0).empty());
@@ -374,17 +391,20 @@ TEST(Variable, IsAskedForByPairsOfSets) {
 
 TEST(Variable, WakesALinkThatSleeps) {
   const std::string text =
-      "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, freeze: {tolerance_m: 1e-4}}\n"
-      "world: {gravity_m_per_s2: [0, -9.81]}\n"
-      "liaisons:\n" +
-      until("gate", "time_s >= 3") +
-      "  s: {kind: spring_damper, stiffness_n_per_m: 500, viscosity_n_s_per_m: 20}\n"
-      "matter:\n"
-      "  wall: {kind: fixed, at_m: [0, 0]}\n"
-      "  bob: {kind: mass, mass_kg: 1, at_m: [0, -1]}\n"
-      "links:\n"
-      "  - {liaison: s, between: [wall, bob], rest_m: 0.98}\n"
-      "  - {liaison: gate, between: [wall, bob], name: g}\n";
+      R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, freeze: {tolerance_m: 1e-4}}
+world: {gravity_m_per_s2: [0, -9.81]}
+liaisons:
+)" + until("gate", "time_s >= 3") +
+      R"(  s: {kind: spring_damper, stiffness_n_per_m: 500, viscosity_n_s_per_m: 20}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [0, -1]}
+links:
+  - {liaison: s, between: [wall, bob], rest_m: 0.98}
+  - {liaison: gate, between: [wall, bob], name: g}
+)";
   config::Problems problems;
   const Scene scene = load_scene_text(text, "t", problems);
   ASSERT_EQ(problems.text(), "");
@@ -438,14 +458,14 @@ class BadConditions : public testing::TestWithParam<BadCondition> {};
 
 TEST(Variable, ThatThousandsOfCopiesMisspellIsOneProblemAtOnce) {
   // Each copy used to look through all names of the scene for what may be meant, which took minutes.
-  const std::string text =
-      scene_head(2) + "liaisons:\n" + until("latch", "bold.state == held or bold.age_s > 1") +
-      "parts:\n"
-      "  door:\n"
-      "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
-      "    links: [{liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: bolt}]\n"
-      "matter:\n"
-      "  doors: {part: door, repeat: {count: 3000, translate_m: [1, 0]}}\n";
+  const std::string text = scene_head(2) + "liaisons:\n" +
+                           until("latch", "bold.state == held or bold.age_s > 1") + R"(parts:
+  door:
+    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}
+    links: [{liaison: latch, between: ["frame[0]", "frame[1]"], name: bolt}]
+matter:
+  doors: {part: door, repeat: {count: 3000, translate_m: [1, 0]}}
+)";
   config::Problems problems;
   load_scene_text(text, "t", problems);
   ASSERT_EQ(problems.error_count(), 2u);
@@ -454,38 +474,37 @@ TEST(Variable, ThatThousandsOfCopiesMisspellIsOneProblemAtOnce) {
 
 TEST(Variable, OfThousandsOfCopiesAreOneEach) {
   const Scene scene = sound_scene(
-      2, "liaisons:\n" + until("latch", "bolt.age_s > 1 and bolt.age_s < 2 and time_s > 1") +
-             "parts:\n"
-             "  door:\n"
-             "    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
-             "    links: [{liaison: latch, between: [\"frame[0]\", \"frame[1]\"], name: bolt}]\n"
-             "matter:\n"
-             "  doors: {part: door, repeat: {count: 5000, translate_m: [1, 0]}}\n");
+      2,
+      "liaisons:\n" + until("latch", "bolt.age_s > 1 and bolt.age_s < 2 and time_s > 1") + R"(parts:
+  door:
+    matter: {frame: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}
+    links: [{liaison: latch, between: ["frame[0]", "frame[1]"], name: bolt}]
+matter:
+  doors: {part: door, repeat: {count: 5000, translate_m: [1, 0]}}
+)");
   EXPECT_EQ(scene.network.variables.size(), 5001u);
 }
 
 TEST_P(BadConditions, AreReportedOnceAtTheirPlace) {
-  const std::string text =
-      "liaisons:\n"
-      "  glue: {states: {apart: {exits: [{to: stuck, when: distance_m < 0.1}]}, stuck: {final: "
-      "true}}}\n"
-      "  s: {kind: spring, stiffness_n_per_m: 1}\n"
-      "  l: {states: {x: {exits: [{to: y, when: \"" +
-      std::string(GetParam().condition) +
-      "\"}]}, y: {final: true}}}\n"
-      "parts:\n"
-      "  door:\n"
-      "    matter: {leaf: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}\n"
-      "    links: [{liaison: s, between: [\"leaf[0]\", \"leaf[1]\"], name: hinge}]\n"
-      "matter:\n"
-      "  w: {part: door}\n"
-      "  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}\n"
-      "links:\n"
-      "  - {liaison: l, between: [\"m[0]\", \"m[1]\"], name: bolt}\n"
-      "  - {liaison: l, between: [\"m[1]\", \"m[2]\"]}\n"
-      "  - {liaison: glue, within: m, range_m: 0.2, rest_m: 0.1, name: bonds}\n"
-      "signals:\n"
-      "  lumps: {of: bonds, quantity: pieces}\n";
+  const std::string text = test::filled(R"(liaisons:
+  glue: {states: {apart: {exits: [{to: stuck, when: distance_m < 0.1}]}, stuck: {final: true}}}
+  s: {kind: spring, stiffness_n_per_m: 1}
+  l: {states: {x: {exits: [{to: y, when: "<condition>"}]}, y: {final: true}}}
+parts:
+  door:
+    matter: {leaf: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0, 1]]}}
+    links: [{liaison: s, between: ["leaf[0]", "leaf[1]"], name: hinge}]
+matter:
+  w: {part: door}
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0], [2, 0]]}
+links:
+  - {liaison: l, between: ["m[0]", "m[1]"], name: bolt}
+  - {liaison: l, between: ["m[1]", "m[2]"]}
+  - {liaison: glue, within: m, range_m: 0.2, rest_m: 0.1, name: bonds}
+signals:
+  lumps: {of: bonds, quantity: pieces}
+)",
+                                        {{"condition", std::string(GetParam().condition)}});
   expect_only_problem({kHead2, text.c_str(), GetParam().message, GetParam().hint});
 }
 

@@ -126,21 +126,32 @@ matter:
 
 constexpr BadScene kBadDriven[] = {
     {kHead2,
-     "parts:\n  p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}\nmatter:\n"
-     "  u: {part: p, driven: ^{position_m: [0, 0]}}\n",
+     R"(parts:
+  p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}
+matter:
+  u: {part: p, driven: ^{position_m: [0, 0]}}
+)",
      "'position_m' drives one MAT: matter 'u' follows displacement_m or force_n", ""},
     {kHead2,
-     "parts:\n  p: {matter: {a: {kind: fixed, driven: {position_m: [0, 0]}}}}\nmatter:\n"
-     "  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     R"(parts:
+  p: {matter: {a: {kind: fixed, driven: {position_m: [0, 0]}}}}
+matter:
+  u: {part: p, driven: ^{displacement_m: [0, 0]}}
+)",
      "matter 'u' has matter that is driven already", ""},
     {kHead2,
-     "parts:\n  p: {matter: {a: {kind: plane, at_m: [0, 0], normal: y}}}\nmatter:\n"
-     "  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     R"(parts:
+  p: {matter: {a: {kind: plane, at_m: [0, 0], normal: y}}}
+matter:
+  u: {part: p, driven: ^{displacement_m: [0, 0]}}
+)",
      "a surface cannot be driven, and matter 'u' has one", ""},
     {kHead2,
-     "parts:\n  p: {matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, "
-     "0]}}}\n"
-     "matter:\n  u: {part: p, driven: ^{displacement_m: [0, 0]}}\n",
+     R"(parts:
+  p: {matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, 0]}}}
+matter:
+  u: {part: p, driven: ^{displacement_m: [0, 0]}}
+)",
      "a driven position has the velocity of its function, and matter 'u' has one of its own", ""},
 
     {kHead1, "matter:\n  a: {kind: fixed, at_m: 0, driven: ^{}}\n",
@@ -174,8 +185,9 @@ constexpr BadScene kBadDriven[] = {
      "'position_m' drives one MAT, matter 'a' has 2",
      "write displacement_m: it moves all of them alike"},
     {kHead1,
-     "matter:\n  a: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: ^1, driven: {position_m: "
-     "time_s}}\n",
+     R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: ^1, driven: {position_m: time_s}}
+)",
      "a driven position has the velocity of its function: 'velocity_m_per_s' in matter 'a' "
      "contradicts it",
      ""},
@@ -192,8 +204,9 @@ constexpr BadScene kBadDriven[] = {
     {kHead1, "matter:\n  a: {kind: fixed, driven: {position_m: {at_s: [0, 2], values: ^[1]}}}\n",
      "'values' in 'position_m' in 'driven' of matter 'a' must be 2, one for each time, got 1", ""},
     {kHead1,
-     "matter:\n  a: {kind: fixed, driven: {position_m: {at_s: [0], values: [1], between: "
-     "^stairs}}}\n",
+     R"(matter:
+  a: {kind: fixed, driven: {position_m: {at_s: [0], values: [1], between: ^stairs}}}
+)",
      "'between' in 'position_m' in 'driven' of matter 'a' must be one of linear, smooth, got "
      "'stairs'",
      ""},

@@ -8,6 +8,7 @@
 
 #include "sim_node/engine/world.h"
 #include "tests/scene/bad_scene.h"
+#include "tests/support/filled.h"
 #include "tests/support/test_seed.h"
 
 namespace cordis::scene {
@@ -211,11 +212,16 @@ TEST(Medium, IsForEachMassAsIfItWereAlone) {
     const Floating floating(random);
     const auto world_in = [&](double viscosity, const std::string& matter) {
       config::Problems problems;
-      const Scene scene = load_scene_text(
-          "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, integrator: " + std::string(integrator) +
-              "}\nworld: {gravity_m_per_s2: [0, -9], viscosity_n_s_per_m: " +
-              config::number_text(viscosity) + "}\n" + matter,
-          "t", problems);
+      const Scene scene =
+          load_scene_text(test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, integrator: <integrator>}
+world: {gravity_m_per_s2: [0, -9], viscosity_n_s_per_m: <viscosity>}
+)",
+                                       {{"integrator", std::string(integrator)},
+                                        {"viscosity", config::number_text(viscosity)}}) +
+                              matter,
+                          "t", problems);
       EXPECT_EQ(problems.text(), "");
       return world_of(scene);
     };
@@ -241,9 +247,11 @@ TEST(Medium, OfTheMatterThatIsThatOfTheWorldHasItsBits) {
       "viscosity_n_s_per_m: 0.1, rest_m: 0, displacement_m: \"0.1 * sin(index)\"";
   for (const char* integrator : {"cordis", "leapfrog", "implicit", "modal"}) {
     for (const char* viscosity : {"0.3", "80"}) {  // of leapfrog the second is solved implicitly
-      const std::string head =
-          "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: " + std::string(integrator) +
-          "}\n";
+      const std::string head = test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: <integrator>}
+)",
+                                            {{"integrator", std::string(integrator)}});
       const auto hash_of = [&](const std::string& text) {
         config::Problems problems;
         World world = world_of(load_scene_text(head + text, "t", problems));
@@ -299,21 +307,28 @@ matter:
 TEST(Medium, ModesWantOneDecayOfAllMasses) {
   const auto refusal = [](const std::string& of_b) {
     config::Problems problems;
-    load_scene_text(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\nmatter:\n"
-        "  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}\n"
-        "  b: {kind: mass, mass_kg: 2, at_m: 0, medium_viscosity_n_s_per_m: " +
-            of_b + "}\n",
-        "t", problems);
+    load_scene_text(test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: modal}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}
+  b: {kind: mass, mass_kg: 2, at_m: 0, medium_viscosity_n_s_per_m: <of_b>}
+)",
+                                 {{"of_b", of_b}}),
+                    "t", problems);
     return problems.text();
   };
   EXPECT_EQ(refusal("0.4"), "");
   EXPECT_NE(refusal("0.2").find("different masses in a medium"), std::string::npos);
   config::Problems problems;
   load_scene_text(
-      "cordis: 1\nspace: 1\nstep: {rate_hz: 1000, integrator: modal}\nmatter:\n"
-      "  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}\n"
-      "  b: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.3}\n",
+      R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: modal}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.2}
+  b: {kind: mass, mass_kg: 1, at_m: 0, medium_viscosity_n_s_per_m: 0.3}
+)",
       "t", problems);
   EXPECT_NE(problems.text().find("masses with different viscosities of the medium"),
             std::string::npos);

@@ -67,8 +67,9 @@ TEST(FixedMatter, HasThePlacesAndLinksOfThatWhichMoves) {
 TEST(FixedMatter, MayBeDrivenAsAWhole) {
   const Scene scene = scene_with_bob(
       2,
-      "  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: [2, 2], spacing_m: 1,\n"
-      "      fixed: true, driven: {displacement_m: [0, time_s]}}\n");
+      R"(  a: {kind: lattice, structure: square, corner_m: [0, 0], counts: [2, 2], spacing_m: 1,
+      fixed: true, driven: {displacement_m: [0, time_s]}}
+)");
   EXPECT_EQ(scene.network.drives.size(), 4u);
   EXPECT_EQ(scene.network.time_functions.size(), 1u);
 }

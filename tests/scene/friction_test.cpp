@@ -84,62 +84,85 @@ INSTANTIATE_TEST_SUITE_P(
     Friction, BadFriction,
     testing::Values(
         BadScene{kHead2,
-                 "liaisons:\n  a: {pulls: false, friction: ^{static: 0.1}}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {pulls: false, friction: ^{static: 0.1}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "missing key 'stiffness_n_per_m' in friction of liaison 'a'", ""},
         BadScene{kHead2,
-                 "liaisons:\n  a: {friction: {static: 0.1, kinetic: ^0.2, stiffness_n_per_m: 1}}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {friction: {static: 0.1, kinetic: ^0.2, stiffness_n_per_m: 1}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "'kinetic' in friction of liaison 'a' must not be above 'static'", ""},
         BadScene{kHead2,
-                 "liaisons:\n  a: {friction: {static: 0.1, stiffness_n_per_m: ^0}}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {friction: {static: 0.1, stiffness_n_per_m: ^0}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "'stiffness_n_per_m' in friction of liaison 'a' must be > 0, got 0", ""},
         BadScene{kHead2,
-                 "liaisons:\n  a: {friction: {static: 0.1, stiffness_n_per_m: 1,\n"
-                 "      viscosity_n_s_per_m: ^1e308}}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {friction: {static: 0.1, stiffness_n_per_m: 1,
+      viscosity_n_s_per_m: ^1e308}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "'viscosity_n_s_per_m' in friction of liaison 'a' must be between 0 and 1e+300, "
                  "got 1e308",
                  ""},
         BadScene{kHead2,
-                 "liaisons:\n  a: {pulls: false, viscosity_n_s_per_m: ^1e308}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {pulls: false, viscosity_n_s_per_m: ^1e308}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "'viscosity_n_s_per_m' in liaison 'a' must be between 0 and 1e+300, got 1e308",
                  ""},
         BadScene{kHead2,
-                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}\n"
-                 "links:\n  - {liaison: ^r, between: [\"a[0]\", \"a[1]\"]}\n",
+                 R"(liaisons:
+  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
+links:
+  - {liaison: ^r, between: ["a[0]", "a[1]"]}
+)",
                  "friction acts between the members of sets, not in a link",
                  "write between_sets: [a, b], also for one MAT each"},
         BadScene{kHead2,
-                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
-                 "matter:\n  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-                 "liaison: ^r}\n",
+                 R"(liaisons:
+  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}
+matter:
+  a: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: ^r}
+)",
                  "friction acts in liaisons of sets, not between neighbours", ""},
-        BadScene{
-            kHead2,
-            "liaisons:\n  a: {states: {x: {pulls: false, exits: [{to: x, when: ^slip_m > 1}]}}}\n"
-            "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
-            "a condition of liaison 'a' asks for 'slip_m', which has no friction",
-            "give it 'friction', or ask for slip_m_per_s"},
-        BadScene{
-            kHead2,
-            "liaisons:\n  a: {states: {x: {pulls: false, exits: [{to: x, when: age_s > 1, rest: "
-            "^slip_m + 1}]}}}\n"
-            "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
-            "a rest length of liaison 'a' asks for 'slip_m', which has no friction",
-            "give it 'friction', or ask for slip_m_per_s"},
         BadScene{kHead2,
-                 "liaisons:\n  a: {states: {x: {pulls: false, friction: ^some}}}\n"
-                 "matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n",
+                 R"(liaisons:
+  a: {states: {x: {pulls: false, exits: [{to: x, when: ^slip_m > 1}]}}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "a condition of liaison 'a' asks for 'slip_m', which has no friction",
+                 "give it 'friction', or ask for slip_m_per_s"},
+        BadScene{kHead2,
+                 R"(liaisons:
+  a: {states: {x: {pulls: false, exits: [{to: x, when: age_s > 1, rest: ^slip_m + 1}]}}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "a rest length of liaison 'a' asks for 'slip_m', which has no friction",
+                 "give it 'friction', or ask for slip_m_per_s"},
+        BadScene{kHead2,
+                 R"(liaisons:
+  a: {states: {x: {pulls: false, friction: ^some}}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
                  "'friction' in state 'x' of liaison 'a' must be a mapping of keys, got 'some'",
                  ""},
         BadScene{kHead1,
-                 "liaisons:\n  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}\n"
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 1]}\n"
-                 "links:\n  - {liaison: ^r, within: a, rest_m: 1, range_m: 1}\n",
+                 R"(liaisons:
+  r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 1]}
+links:
+  - {liaison: ^r, within: a, rest_m: 1, range_m: 1}
+)",
                  "space 1 has no direction to slide in, so there is no friction",
                  "take a liaison without 'friction', or 'space: 2'"}));
 

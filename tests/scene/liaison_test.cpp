@@ -43,7 +43,10 @@ links:
 };
 
 constexpr const char* kSoft =
-    "cordis: 1\nliaisons:\n  soft: {kind: spring, stiffness_n_per_m: 3}\n";
+    R"(cordis: 1
+liaisons:
+  soft: {kind: spring, stiffness_n_per_m: 3}
+)";
 
 TEST_F(Include, BringsTheLiaisonsOfAFileBesideTheScene) {
   write("more/soft.yaml", kSoft);
@@ -57,27 +60,43 @@ TEST_F(Include, BringsTheLiaisonsOfAFileBesideTheScene) {
 
 TEST_F(Include, GoesOnRelativeToTheIncludedFile) {
   write("more/soft.yaml", kSoft);
-  write("more/all.yaml", "cordis: 1\nliaisons:\n  include: soft.yaml\n");
+  write("more/all.yaml", R"(cordis: 1
+liaisons:
+  include: soft.yaml
+)");
   EXPECT_EQ(problems_of(scene_file("  include: more/all.yaml\n", "soft")), "");
 }
 
 TEST_F(Include, TakesAFileOnceThoughTwoNameIt) {
   write("more/soft.yaml", kSoft);
-  write("more/a.yaml", "cordis: 1\nliaisons:\n  include: soft.yaml\n");
-  write("more/b.yaml", "cordis: 1\nliaisons:\n  include: ../more/soft.yaml\n");
+  write("more/a.yaml", R"(cordis: 1
+liaisons:
+  include: soft.yaml
+)");
+  write("more/b.yaml", R"(cordis: 1
+liaisons:
+  include: ../more/soft.yaml
+)");
   EXPECT_EQ(problems_of(scene_file("  include: [more/a.yaml, more/b.yaml]\n", "soft")), "");
 }
 
 TEST_F(Include, OfItselfIsAProblem) {
-  write("more/a.yaml", "cordis: 1\nliaisons:\n  include: b.yaml\n");
-  const std::string b = write(
-      "more/b.yaml",
-      "cordis: 1\nliaisons:\n  include: a.yaml\n  soft: {kind: spring, stiffness_n_per_m: 3}\n");
+  write("more/a.yaml", R"(cordis: 1
+liaisons:
+  include: b.yaml
+)");
+  const std::string b = write("more/b.yaml",
+                              R"(cordis: 1
+liaisons:
+  include: a.yaml
+  soft: {kind: spring, stiffness_n_per_m: 3}
+)");
 
   const std::string problems = problems_of(scene_file("  include: more/a.yaml\n", "soft"));
 
-  EXPECT_EQ(problems,
-            b + ":3:12: error: 'a.yaml' includes itself\n  include: a.yaml\n           ^");
+  EXPECT_EQ(problems, b + R"(:3:12: error: 'a.yaml' includes itself
+  include: a.yaml
+           ^)");
   write("scene_of_itself.yaml", scene_head(2) +
                                     R"(liaisons: {include: scene_of_itself.yaml}
 matter:
@@ -100,9 +119,12 @@ TEST_F(Include, OfAMissingFileIsAProblemOfItsPlace) {
 }
 
 TEST_F(Include, ReportsProblemsInTheIncludedFile) {
-  const std::string soft =
-      write("soft.yaml",
-            "cordis: 1\nliaisons:\n  soft: {kind: spring, stiffness_n_per_m: -3}\nmatter: {}\n");
+  const std::string soft = write("soft.yaml",
+                                 R"(cordis: 1
+liaisons:
+  soft: {kind: spring, stiffness_n_per_m: -3}
+matter: {}
+)");
 
   const std::string problems = problems_of(scene_file("  include: soft.yaml\n", "soft"));
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -72,10 +73,11 @@ TEST(Matter, FixedNeverMoves) {
 }
 
 TEST(Matter, PointsHaveEachItsOwnPlaceMassAndVelocity) {
-  const Scene scene = sound_scene(
-      1,
-      "matter:\n  a: {kind: points, at_m: [0.1, 0.2, 0.3], mass_kg: [1, 0, 3], fixed: [1], "
-      "velocity_m_per_s: [4, 5, 6], radius_m: 0.01, layout_at_m: [[0, 1], [2, 3], [4, 5]]}\n");
+  const Scene scene = sound_scene(1,
+                                  R"(matter:
+  a: {kind: points, at_m: [0.1, 0.2, 0.3], mass_kg: [1, 0, 3], fixed: [1],
+      velocity_m_per_s: [4, 5, 6], radius_m: 0.01, layout_at_m: [[0, 1], [2, 3], [4, 5]]}
+)");
   const auto& mats = scene.network.mats;
 
   ASSERT_EQ(mats.size(), 3u);
@@ -108,10 +110,11 @@ TEST(Matter, NamesTheRangesInTheOrderOfTheFile) {
 }
 
 TEST(Matter, ChainStandsEvenlyBetweenItsEnds) {
-  const Scene scene = sound_scene(
-      3,
-      "matter:\n  a: {kind: string, count: 5, mass_kg: 0.1, from_m: [0, 1, 2], to_m: [4, 1, 5], "
-      "stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.5}\n");
+  const Scene scene = sound_scene(3,
+                                  R"(matter:
+  a: {kind: string, count: 5, mass_kg: 0.1, from_m: [0, 1, 2], to_m: [4, 1, 5],
+      stiffness_n_per_m: 7, viscosity_n_s_per_m: 0.5}
+)");
 
   ASSERT_EQ(scene.network.mats.size(), 5u);
   ASSERT_EQ(scene.network.links.size(), 4u);
@@ -182,10 +185,11 @@ TEST(Matter, RingIsARegularPolygonThatCloses) {
 
 TEST(Matter, RingAndGridLieInThePlaneTheyName) {
   const auto second_of_ring = [](const std::string& plane) {
-    return sound_scene(3,
-                       "matter:\n  a: {kind: ring, count: 4, mass_kg: 1, center_m: [0, 0, 0], "
-                       "radius_m: 1, stiffness_n_per_m: 4" +
-                           plane + "}\n")
+    return sound_scene(3, test::filled(R"(matter:
+  a: {kind: ring, count: 4, mass_kg: 1, center_m: [0, 0, 0], radius_m: 1,
+      stiffness_n_per_m: 4<plane>}
+)",
+                                       {{"plane", plane}}))
         .network.mats[1]
         .position;
   };
@@ -220,9 +224,10 @@ TEST(Matter, GridJoinsNeighboursInRowsAndColumns) {
 
 TEST(Matter, GridJoinsTheDiagonalsByShear) {
   const Scene scene = sound_scene(2,
-                                  "matter:\n  a: {kind: grid, rows: 3, columns: 4, mass_kg: 1, "
-                                  "corner_m: [0, 0], spacing_m: [3, 4], "
-                                  "stiffness_n_per_m: 4, shear_stiffness_n_per_m: 9}\n");
+                                  R"(matter:
+  a: {kind: grid, rows: 3, columns: 4, mass_kg: 1, corner_m: [0, 0], spacing_m: [3, 4],
+      stiffness_n_per_m: 4, shear_stiffness_n_per_m: 9}
+)");
   ASSERT_EQ(scene.network.links.size(), 17u + 2u * 2u * 3u);
   for (std::size_t l = 17; l < scene.network.links.size(); ++l) {
     EXPECT_EQ(scene.network.links[l].stiffness, 9.0);
@@ -245,14 +250,14 @@ TEST(Matter, GridIsFixedAtTheBorderItNames) {
 }
 
 TEST(Matter, TakesItsLinksFromALiaison) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n  steel: {kind: spring_damper, stiffness_n_per_m: 5, "
-      "viscosity_n_s_per_m: 6, rest_m: 0.7}\n"
-      "matter:\n  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
-      "liaison: steel}\n"
-      "  b: {kind: string, count: 2, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: "
-      "steel, viscosity_n_s_per_m: 8, tension_n: 1}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  steel: {kind: spring_damper, stiffness_n_per_m: 5, viscosity_n_s_per_m: 6, rest_m: 0.7}
+matter:
+  a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], liaison: steel}
+  b: {kind: string, count: 2, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], liaison: steel,
+      viscosity_n_s_per_m: 8, tension_n: 1}
+)");
   EXPECT_EQ(scene.network.links[0].stiffness, 5.0);
   EXPECT_EQ(scene.network.links[0].viscosity, 6.0);
   EXPECT_EQ(scene.network.links[0].rest_length, 0.7);

@@ -12,30 +12,30 @@ namespace cordis::scene {
 namespace {
 
 constexpr const char* kScene =
-    "liaisons:\n"
-    "  soft: {kind: spring_damper, parameters: {k: 3}, stiffness_n_per_m: 2 * k, "
-    "viscosity_n_s_per_m: 1}\n"
-    "  late: {kind: maxwell, stiffness_n_per_m: 5, viscosity_n_s_per_m: 6}\n"
-    "  both: {parallel: [soft, late]}\n"
-    "  brittle:\n"
-    "    parameters: {length_m: 0.1, twice_m: 2 * length_m}\n"
-    "    states:\n"
-    "      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > twice_m}]}\n"
-    "      broken: {}\n"
-    "matter:\n"
-    "  wall: {kind: fixed, at_m: [0, 0]}\n"
-    "  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}\n"
-    "  bar: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], stiffness_n_per_m: "
-    "7, viscosity_n_s_per_m: 8}\n"
-    "links:\n"
-    "  - {liaison: soft, between: [wall, bob]}\n"
-    "  - {liaison: soft, between: [wall, bob], k: 9, name: stiff}\n"
-    "  - {liaison: late, between: [wall, bob]}\n"
-    "  - {liaison: brittle, between: [wall, bob]}\n"
-    "  - {liaison: brittle, between: [wall, bob]}\n"
-    "  - {liaison: brittle, between: [wall, bob], length_m: 0.3, name: strong}\n"
-    "  - {liaison: brittle, within: bar, rest_m: 0.1, range_m: 0.2, name: glue}\n"
-    "  - {liaison: both, between: [wall, bob], name: solid}\n";
+    R"(liaisons:
+  soft: {kind: spring_damper, parameters: {k: 3}, stiffness_n_per_m: 2 * k, viscosity_n_s_per_m: 1}
+  late: {kind: maxwell, stiffness_n_per_m: 5, viscosity_n_s_per_m: 6}
+  both: {parallel: [soft, late]}
+  brittle:
+    parameters: {length_m: 0.1, twice_m: 2 * length_m}
+    states:
+      whole: {stiffness_n_per_m: 10, exits: [{to: broken, when: elongation_m > twice_m}]}
+      broken: {}
+matter:
+  wall: {kind: fixed, at_m: [0, 0]}
+  bob: {kind: mass, mass_kg: 1, at_m: [1, 0]}
+  bar: {kind: string, count: 3, mass_kg: 1, from_m: [0, 1], to_m: [1, 1], stiffness_n_per_m: 7,
+        viscosity_n_s_per_m: 8}
+links:
+  - {liaison: soft, between: [wall, bob]}
+  - {liaison: soft, between: [wall, bob], k: 9, name: stiff}
+  - {liaison: late, between: [wall, bob]}
+  - {liaison: brittle, between: [wall, bob]}
+  - {liaison: brittle, between: [wall, bob]}
+  - {liaison: brittle, between: [wall, bob], length_m: 0.3, name: strong}
+  - {liaison: brittle, within: bar, rest_m: 0.1, range_m: 0.2, name: glue}
+  - {liaison: both, between: [wall, bob], name: solid}
+)";
 
 class ParametersOfAScene : public testing::Test {
  protected:

@@ -152,10 +152,11 @@ matter:
 }
 
 TEST(Part, RestsWhereItIsPut) {
-  const Scene scene = sound_scene(
-      2, kWheel +
-             "matter:\n  row: {part: wheel, translate_m: [0.3, 0.7], rotate_deg: 33, repeat: "
-             "{count: 20, translate_m: [0.37, 0.11], rotate_deg: 7}}\n");
+  const Scene scene = sound_scene(2, kWheel +
+                                         R"(matter:
+  row: {part: wheel, translate_m: [0.3, 0.7], rotate_deg: 33,
+        repeat: {count: 20, translate_m: [0.37, 0.11], rotate_deg: 7}}
+)");
   engine::World world(std::make_shared<const engine::Network>(scene.network));
   world.step();
   Vec3 sum = Vec3::Zero();
@@ -220,10 +221,16 @@ parts:
 }
 
 TEST_F(PartFiles, ReportWhatIsWrongAtTheirOwnPlace) {
-  write("parts/a.yaml", "cordis: 1\nparts:\n  include: b.yaml\n");
-  write(
-      "parts/b.yaml",
-      "cordis: 1\nparts:\n  include: a.yaml\n  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}\n");
+  write("parts/a.yaml", R"(cordis: 1
+parts:
+  include: b.yaml
+)");
+  write("parts/b.yaml",
+        R"(cordis: 1
+parts:
+  include: a.yaml
+  p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}
+)");
 
   const std::string report = problems_of("parts/a.yaml", "  a: {part: p}\n");
 
@@ -277,7 +284,11 @@ matter:
 )",
                  "unknown key 'signals' in part 'p'",
                  "known keys: parameters, ports, matter, links"},
-        BadScene{kHead2, "parts:\n  p: {matter: ^{}}\nmatter:\n  a: {part: p}\n",
+        BadScene{kHead2, R"(parts:
+  p: {matter: ^{}}
+matter:
+  a: {part: p}
+)",
                  "part 'p' has no matter", ""},
         BadScene{kHead2,
                  R"(parts:
@@ -339,9 +350,12 @@ matter:
 )",
                  "missing key 'axis' in 'rotate' of matter 'a'", ""},
         BadScene{kHead2,
-                 "parts:\n  p: {matter: {^m: {kind: lattice, structure: square, corner_m: [0, 0], "
-                 "counts: [1000, 600], mass_kg: 1, spacing_m: 1}}}\n"
-                 "matter:\n  a: {part: p, repeat: {count: 2}}\n",
+                 R"(parts:
+  p: {matter: {^m: {kind: lattice, structure: square, corner_m: [0, 0], counts: [1000, 600],
+                    mass_kg: 1, spacing_m: 1}}}
+matter:
+  a: {part: p, repeat: {count: 2}}
+)",
                  "the scene has more than 1000000 MATs or 8000000 links", ""},
         BadScene{kHead2,
                  R"(parts:

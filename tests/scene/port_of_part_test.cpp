@@ -93,34 +93,45 @@ INSTANTIATE_TEST_SUITE_P(
     Scene, BadPortOfPart,
     testing::Values(
         BadScene{kHead2,
-                 "parts: {k: {ports: {f: ^{device: d, axes: [0], at_m: [0, 0]}}}}\n"
-                 "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"
-                 "  keys: {part: k, repeat: {count: 16, translate_m: [1, 0]}}\n",
+                 R"(parts: {k: {ports: {f: ^{device: d, axes: [0], at_m: [0, 0]}}}}
+matter:
+  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+  keys: {part: k, repeat: {count: 16, translate_m: [1, 0]}}
+)",
                  "missing key 'role' in port 'f' of part 'k'", ""},
         BadScene{
             kHead2,
-            "parts: {k: {ports: {f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}\n"
-            "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"
-            "  ^keys: {part: k, repeat: {count: 20, translate_m: [1, 0]}}\n",
+            R"(parts: {k: {ports: {f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}
+matter:
+  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+  ^keys: {part: k, repeat: {count: 20, translate_m: [1, 0]}}
+)",
             "copy 16 of matter 'keys' takes axis 16 of the device 'd', and a device has axes 0 to "
             "15",
             ""},
         BadScene{
             kHead2,
-            "parts: {k: {ports: {f: {device: d, axes: [0, 1], role: mass, at_m: [0, 0]}}}}\n"
-            "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"
-            "  ^keys: {part: k, repeat: {count: 20, translate_m: [1, 0]}}\n",
+            R"(parts: {k: {ports: {f: {device: d, axes: [0, 1], role: mass, at_m: [0, 0]}}}}
+matter:
+  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+  ^keys: {part: k, repeat: {count: 20, translate_m: [1, 0]}}
+)",
             "copy 8 of matter 'keys' takes axis 16 of the device 'd', and a device has axes 0 to "
             "15",
             ""},
         BadScene{kHead2,
-                 "parts: {k: {ports: {^f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}\n"
-                 "matter:\n  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}\n"
-                 "  some: {part: k, repeat: {count: 4, translate_m: [1, 0]}}\n"
-                 "  more: {part: k, repeat: {count: 4, translate_m: [1, 0]}}\n",
+                 R"(parts: {k: {ports: {^f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}
+matter:
+  b: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+  some: {part: k, repeat: {count: 4, translate_m: [1, 0]}}
+  more: {part: k, repeat: {count: 4, translate_m: [1, 0]}}
+)",
                  "axis 0 of device 'd' is taken by port 'some[0].f'", ""},
         BadScene{kHead2,
-                 "parts: {k: ^{links: []}}\nmatter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
+                 R"(parts: {k: ^{links: []}}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+)",
                  "missing key 'matter' in part 'k'", ""}));
 
 }  // namespace

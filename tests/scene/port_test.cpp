@@ -6,6 +6,7 @@
 #include "node/config/name_hash.h"
 #include "sim_node/engine/world.h"
 #include "tests/scene/scene_text.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -133,8 +134,12 @@ signals:
 TEST(Port, OfEitherRoleTakesTheSameKeys) {
   const auto port_with = [](const std::string& keys) {
     return scene_with_bob(1, "",
-                          "ports:\n  p: {device: d, axes: 0, " + keys +
-                              "}\nsignals:\n  f: {of: p.handle, quantity: force}\n");
+                          test::filled(R"(ports:
+  p: {device: d, axes: 0, <keys>}
+signals:
+  f: {of: p.handle, quantity: force}
+)",
+                                       {{"keys", keys}}));
   };
   const auto tool_mass = [&](const std::string& keys) {
     const Scene scene = port_with(keys);

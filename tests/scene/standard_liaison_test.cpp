@@ -14,6 +14,7 @@
 #include "node/config/yaml_reader.h"
 #include "sim_node/engine/world.h"
 #include "tests/scene/scene_text.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -40,13 +41,15 @@ liaisons: {include: ../liaisons/standard.yaml}
 class Rig {
  public:
   explicit Rig(const std::string& links, const std::string& mass = "{mass_kg: 1, at_m: 9}")
-      : scene_(scene_with("matter:\n  wall: {kind: fixed, at_m: 0}\n  bob: {kind: mass, " +
-                          mass.substr(1) +
-                          R"(
+      : scene_(scene_with(test::filled(R"(matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, <mass>
 ports:
   hand: {device: d, axes: [0], role: mass, coupling: direct, at_m: 0}
 links:
-)" + links)),
+)",
+                                       {{"mass", mass.substr(1)}}) +
+                          links)),
         world_(std::make_shared<const engine::Network>(scene_.network)) {}
 
   /// Moves the hand to a place at a steady speed. @param each_step  called after each step

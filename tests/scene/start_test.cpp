@@ -200,14 +200,16 @@ INSTANTIATE_TEST_SUITE_P(
             ""},
         BadScene{
             kHead2,
-            "matter:\n  a: {kind: mass, at_m: [0, 0], displacement_m: ^[1, 0], driven: "
-            "{displacement_m: [time_s, 0]}}\n",
+            R"(matter:
+  a: {kind: mass, at_m: [0, 0], displacement_m: ^[1, 0], driven: {displacement_m: [time_s, 0]}}
+)",
             "a driven position has the displacement of its function: 'displacement_m' in matter "
             "'a' contradicts it",
             ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], displacement_m: "
-                 "[\"^time_s\", 0]}\n",
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0], displacement_m: ["^time_s", 0]}
+)",
                  "'displacement_m' in matter 'a' cannot ask for 'time_s'",
                  "it may ask for index, count, x_m, y_m, pi and its parameters"},
         BadScene{kHead2,
@@ -215,23 +217,27 @@ INSTANTIATE_TEST_SUITE_P(
                  "'displacement_m' in matter 'a' must be 2 formulas, one for each axis, got 'x_m'",
                  ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^[\"1 / "
-                 "x_m\", 0]}\n",
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^["1 / x_m", 0]}
+)",
                  "'velocity_m_per_s' in matter 'a' at index 0 is no finite number", ""},
         BadScene{
             kHead2,
             "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], displacement_m: ^[2e6, 0]}\n",
             "'displacement_m' in matter 'a' at index 0 is beyond 1e6", ""},
         BadScene{kHead2,
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: ^{x_m: 1}, "
-                 "displacement_m: [x_m, 0]}\n",
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: ^{x_m: 1}, displacement_m: [x_m, 0]}
+)",
                  "'x_m' has its meaning in formulas of the start",
                  "give the parameter another name"},
-        BadScene{
-            kHead2,
-            "parts: {p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}}\nmatter:\n"
-            "  u: {part: p, spin_rad_per_s: ^1}\n  b: {kind: mass, mass_kg: 1, at_m: [1, 1]}\n",
-            "part 'p' has no mass that starts in motion", ""}));
+        BadScene{kHead2,
+                 R"(parts: {p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}}
+matter:
+  u: {part: p, spin_rad_per_s: ^1}
+  b: {kind: mass, mass_kg: 1, at_m: [1, 1]}
+)",
+                 "part 'p' has no mass that starts in motion", ""}));
 
 }  // namespace
 }  // namespace cordis::scene

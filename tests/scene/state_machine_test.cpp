@@ -23,20 +23,21 @@ engine::NetworkDescription network_of(const std::string& liaisons, const std::st
 }
 
 constexpr const char* kCollophane =
-    "  collophane:\n"
-    "    parameters: {stiffness_n_per_m: 400, hold_m: 0.002, slow_m_per_s: hold_m * 5}\n"
-    "    start: unhooked\n"
-    "    states:\n"
-    "      hooked:\n"
-    "        stiffness_n_per_m: stiffness_n_per_m\n"
-    "        viscosity_n_s_per_m: 0.8\n"
-    "        exits: [{to: unhooked, when: abs(elongation_m) > hold_m}]\n"
-    "      unhooked:\n"
-    "        viscosity_n_s_per_m: 2 * 0.025\n"
-    "        exits:\n"
-    "          - to: hooked\n"
-    "            when: \"abs(speed_m_per_s) < slow_m_per_s and falling(abs(speed_m_per_s))\"\n"
-    "            rest: here\n";
+    R"yaml(  collophane:
+    parameters: {stiffness_n_per_m: 400, hold_m: 0.002, slow_m_per_s: hold_m * 5}
+    start: unhooked
+    states:
+      hooked:
+        stiffness_n_per_m: stiffness_n_per_m
+        viscosity_n_s_per_m: 0.8
+        exits: [{to: unhooked, when: abs(elongation_m) > hold_m}]
+      unhooked:
+        viscosity_n_s_per_m: 2 * 0.025
+        exits:
+          - to: hooked
+            when: "abs(speed_m_per_s) < slow_m_per_s and falling(abs(speed_m_per_s))"
+            rest: here
+)yaml";
 
 TEST(StateMachine, HasItsStatesExitsAndParametersPutToValues) {
   const engine::NetworkDescription network =
@@ -87,7 +88,10 @@ TEST(StateMachine, IsOneForEachDistinctSetOfParameters) {
 TEST(StateMachine, LikeAnotherHasWhatItDoesNotSayItself) {
   const engine::NetworkDescription network = network_of(
       std::string("  rosin: {like: collophane, parameters: {hold_m: 0.003}}\n") + kCollophane +
-          "  wet:\n    like: rosin\n    states: {hooked: {viscosity_n_s_per_m: 7}}\n",
+          R"(  wet:
+    like: rosin
+    states: {hooked: {viscosity_n_s_per_m: 7}}
+)",
       "  - {liaison: wet, between: [wall, bob]}\n");
   const engine::StateMachine& wet = network.state_machines.at(0);
   EXPECT_EQ(wet.states.size(), 2u);
@@ -205,9 +209,11 @@ TEST(Law, OfEveryKindIsRead) {
 
 TEST(Law, OfAFreeExpressionIsItsValue) {
   const engine::NetworkDescription network = network_of(
-      "  l:\n    parameters: {k: 500}\n"
-      "    elasticity: \"k * elongation_m + 2e6 * elongation_m^3 - if(distance_m > 2, 1, 0)\"\n"
-      "    dissipation: 3 * speed_m_per_s * mass_a_kg\n",
+      R"yaml(  l:
+    parameters: {k: 500}
+    elasticity: "k * elongation_m + 2e6 * elongation_m^3 - if(distance_m > 2, 1, 0)"
+    dissipation: 3 * speed_m_per_s * mass_a_kg
+)yaml",
       "  - {liaison: l, between: [wall, bob]}\n");
   const engine::LinkState& state = network.state_machines.at(0).states[0];
   ASSERT_TRUE(std::holds_alternative<engine::Expression>(state.elasticity));
@@ -322,20 +328,20 @@ links:
 }
 
 TEST(SetLiaison, WithinASetReachesAsFarAsItsLaw) {
-  const Scene scene = sound_scene(
-      2,
-      "liaisons:\n"
-      "  clay: {viscosity_n_s_per_m: 0.02, elasticity: {kind: lennard_jones, depth_j: 1.0e-5, "
-      "diameter_m: 0.008, cut_m: 0.02}}\n"
-      "  touch: {stiffness_n_per_m: 90, pulls: false, range: rest}\n"
-      "matter:\n"
-      "  paste: {kind: mass, ball: {mass_kg: 1, radius_m: 0.01}, at_m: [[0, 0], [1, 0], [2, 0]]}\n"
-      "  grit: {kind: mass, ball: {mass_kg: 1, radius_m: 0.02}, at_m: [[0, 1], [1, 1]]}\n"
-      "links:\n"
-      "  - {liaison: clay, within: paste}\n"
-      "  - {liaison: clay, within: \"paste[0..1]\", range_m: 0.03}\n"
-      "  - {liaison: touch, between_sets: [paste, grit], name: rub}\n"
-      "  - {liaison: touch, within: grit, rest_m: 0.5}\n");
+  const Scene scene = sound_scene(2,
+                                  R"(liaisons:
+  clay: {viscosity_n_s_per_m: 0.02, elasticity: {kind: lennard_jones, depth_j: 1.0e-5,
+        diameter_m: 0.008, cut_m: 0.02}}
+  touch: {stiffness_n_per_m: 90, pulls: false, range: rest}
+matter:
+  paste: {kind: mass, ball: {mass_kg: 1, radius_m: 0.01}, at_m: [[0, 0], [1, 0], [2, 0]]}
+  grit: {kind: mass, ball: {mass_kg: 1, radius_m: 0.02}, at_m: [[0, 1], [1, 1]]}
+links:
+  - {liaison: clay, within: paste}
+  - {liaison: clay, within: "paste[0..1]", range_m: 0.03}
+  - {liaison: touch, between_sets: [paste, grit], name: rub}
+  - {liaison: touch, within: grit, rest_m: 0.5}
+)");
   const auto& sets = scene.network.sets;
   ASSERT_EQ(sets.size(), 4u);
   EXPECT_EQ(sets[0].set_p, (std::vector<std::uint32_t>{0, 1, 2}));

@@ -144,41 +144,57 @@ INSTANTIATE_TEST_SUITE_P(
                  "a cylinder needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{
             kHead2,
-            "parts: {p: {matter: {^b: {kind: box, center_m: [0, 0], size_m: [1, 1]}}}}\n"
-            "matter:\n  a: {part: p, rotate_deg: 30}\n",
+            R"(parts: {p: {matter: {^b: {kind: box, center_m: [0, 0], size_m: [1, 1]}}}}
+matter:
+  a: {part: p, rotate_deg: 30}
+)",
             "a box lies along the axes of the scene: a part that has one is turned by quarters "
             "of a circle about them",
             ""},
         BadScene{kLinked,
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "links:\n  - {liaison: s, between: ^[a, f]}\n",
+                 R"(  f: {kind: plane, at_m: [0, 0], normal: y}
+links:
+  - {liaison: s, between: ^[a, f]}
+)",
                  "a link joins MATs, and a surface has no place of its own",
                  "write between_sets: [matter, surface], also for one MAT"},
         BadScene{kLinked,
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "links:\n  - {liaison: s, within: ^[a, f], rest_m: 1, range_m: 1}\n",
+                 R"(  f: {kind: plane, at_m: [0, 0], normal: y}
+links:
+  - {liaison: s, within: ^[a, f], rest_m: 1, range_m: 1}
+)",
                  kOwnSet, kWriteSets},
         BadScene{kLinked,
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "links:\n  - {liaison: s, between_sets: ^[a, [b, f]], rest_m: 1, range_m: 1}\n",
+                 R"(  f: {kind: plane, at_m: [0, 0], normal: y}
+links:
+  - {liaison: s, between_sets: ^[a, [b, f]], rest_m: 1, range_m: 1}
+)",
                  kOwnSet, kWriteSets},
         BadScene{kLinked,
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "  g: {kind: plane, at_m: [0, 0], normal: x}\n"
-                 "links:\n  - {liaison: s, between_sets: ^[f, g], rest_m: 1, range_m: 1}\n",
+                 R"(  f: {kind: plane, at_m: [0, 0], normal: y}
+  g: {kind: plane, at_m: [0, 0], normal: x}
+links:
+  - {liaison: s, between_sets: ^[f, g], rest_m: 1, range_m: 1}
+)",
                  "both sets are surfaces, which never move", ""},
         BadScene{kHead2,
-                 "liaisons:\n  v: {elasticity: {kind: lennard_jones, depth_j: 1, diameter_m: 1, "
-                 "cut_m: 3}}\n"
-                 "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 9]}\n"
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "links:\n  - {liaison: ^v, between_sets: [f, a]}\n",
+                 R"(liaisons:
+  v: {elasticity: {kind: lennard_jones, depth_j: 1, diameter_m: 1, cut_m: 3}}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 9]}
+  f: {kind: plane, at_m: [0, 0], normal: y}
+links:
+  - {liaison: ^v, between_sets: [f, a]}
+)",
                  "a surface takes no Lennard-Jones law, which has no value inside it",
                  "take rings, a table or an expression"},
         BadScene{kLinked,
-                 "  f: {kind: plane, at_m: [0, 0], normal: y}\n"
-                 "links:\n  - {liaison: s, between_sets: [f, a], rest_m: 1, range_m: 1, name: n}\n"
-                 "signals:\n  p: {of: n, quantity: pieces, near_m: ^0.1}\n",
+                 R"(  f: {kind: plane, at_m: [0, 0], normal: y}
+links:
+  - {liaison: s, between_sets: [f, a], rest_m: 1, range_m: 1, name: n}
+signals:
+  p: {of: n, quantity: pieces, near_m: ^0.1}
+)",
                  "surfaces are no pieces", "count bound pairs, without near_m"}));
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "sim_node/scene/signal.h"
 #include "tests/scene/scene_text.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -90,9 +91,13 @@ TEST(SignalOfAWhole, AngularMomentumIsKeptByIntegratorsAsTheDocumentsSay) {
     const std::string damper = ", viscosity_n_s_per_m: 0.02";
     text.erase(text.find(damper), damper.size());  // symplectic4 takes none
     config::Problems problems;
-    Scene scene = load_scene_text(
-        "cordis: 1\nspace: 2\nstep: {rate_hz: 1000, integrator: " + integrator + "}\n" + text, "t",
-        problems);
+    Scene scene = load_scene_text(test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, integrator: <integrator>}
+)",
+                                               {{"integrator", integrator}}) +
+                                      text,
+                                  "t", problems);
     EXPECT_EQ(problems.text(), "");
     WholeRun run(std::move(scene));
     const double before = run.values().at("spin");
@@ -204,7 +209,9 @@ std::string heap(std::mt19937& random, const std::string& extra) {
       "{stiffness_n_per_m: 300, viscosity_n_s_per_m: 0.3, exits: [{to: apart, when: elongation_m > "
       "0.01}]}}}"};
   std::string text =
-      "world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.02}\nliaisons:\n  land: ";
+      R"(world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.02}
+liaisons:
+  land: )";
   text += laws[random() % laws.size()];
   text += "\nmatter:\n  floor: {kind: fixed, ball: {radius_m: 0.05}, at_m: [";
   for (int i = 0; i < 12; ++i) text += "[" + std::to_string(0.08 * i) + ", 0], ";
@@ -218,10 +225,11 @@ std::string heap(std::mt19937& random, const std::string& extra) {
     }
     text += "]}\n";
   }
-  const char* const kLinks = random() % 2 == 0
-                                 ? "links:\n  - {liaison: land, within: [floor, a, b]}\n"
-                                 : "links:\n  - {liaison: land, within: [a, b]}\n"
-                                   "  - {liaison: land, between_sets: [[a, b], floor]}\n";
+  const char* const kLinks =
+      random() % 2 == 0 ? "links:\n  - {liaison: land, within: [floor, a, b]}\n" : R"(links:
+  - {liaison: land, within: [a, b]}
+  - {liaison: land, between_sets: [[a, b], floor]}
+)";
   return text + kLinks + extra;
 }
 
@@ -269,16 +277,20 @@ TEST(SignalOfAWhole, ContactForceIsThereWithEveryIntegratorThatTakesSets) {
     for (const char* integrator : {"cordis", "leapfrog", "symplectic4", "implicit"}) {
       SCOPED_TRACE(std::string(law) + integrator);
       config::Problems problems;
-      Scene scene = load_scene_text(
-          std::string("cordis: 1\nspace: 2\nstep: {rate_hz: 2000, integrator: ") + integrator +
-              "}\nliaisons: {land: " + law +
-              "}\nmatter:\n"
-              "  floor: {kind: fixed, ball: {radius_m: 0.05}, at_m: [[0, 0], [0.08, 0]]}\n"
-              "  a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.05}, at_m: [0.03, 0.07]}\n"
-              "links: [{liaison: land, between_sets: [a, floor]}]\nsignals:\n"
-              "  of_a: {of: a, quantity: force, axis: y}\n"
-              "  a: {of: a, by: floor, quantity: contact_force, axis: y}\n",
-          "t", problems);
+      Scene scene = load_scene_text(test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 2000, integrator: <integrator>}
+liaisons: {land: <law>}
+matter:
+  floor: {kind: fixed, ball: {radius_m: 0.05}, at_m: [[0, 0], [0.08, 0]]}
+  a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.05}, at_m: [0.03, 0.07]}
+links: [{liaison: land, between_sets: [a, floor]}]
+signals:
+  of_a: {of: a, quantity: force, axis: y}
+  a: {of: a, by: floor, quantity: contact_force, axis: y}
+)",
+                                                 {{"integrator", integrator}, {"law", law}}),
+                                    "t", problems);
       ASSERT_EQ(problems.text(), "");
       WholeRun run(std::move(scene));
       run.step(3);

@@ -13,6 +13,7 @@
 #include "record_node/record_config.h"
 #include "sim_node/scene/sections/scene_reader.h"
 #include "sim_node/sim_config.h"
+#include "tests/support/filled.h"
 #include "viz_node/viz_config.h"
 
 namespace cordis::test {
@@ -212,11 +213,19 @@ record: {out: none.mcap}
 
 std::string device_with(const std::string& hand) {
   const std::string wire = "{port: /dev/null, coupling: {}}";
-  return "cordis: 1\naxes: 4\nend_piece: {map: [[1, 0, 0, 0]]}\npassivity: {}\n"
-         "trace: {file: /tmp/trace.csv}\nscript: {positions: [{at_s: 0, m: 0}]}\n"
-         "replay: {take: none.mcap}\nkfb1: " +
-         wire + "\nfirefader: " + wire + "\nhaply: " + wire +
-         "\nmock: {key: {}, sensor: {}, hand: {axes: [0, 1, 2, 3], finger: {}, " + hand + "}}\n";
+  return filled(R"(cordis: 1
+axes: 4
+end_piece: {map: [[1, 0, 0, 0]]}
+passivity: {}
+trace: {file: /tmp/trace.csv}
+script: {positions: [{at_s: 0, m: 0}]}
+replay: {take: none.mcap}
+kfb1: <wire>
+firefader: <wire>
+haply: <wire>
+mock: {key: {}, sensor: {}, hand: {axes: [0, 1, 2, 3], finger: {}, <hand>}}
+)",
+                {{"wire", wire}, {"hand", hand}});
 }
 
 void read_device(const config::Launch& launch, const config::LaunchNode& node,
@@ -267,10 +276,15 @@ std::vector<Document> cover_documents() {
       {"launch", kRoot / "launch_configs/cover.yaml", kLaunch},
       {"device", "moves", device_with("moves: [{at_s: 0, in_s: 1, to_m: 0}]")},
       {"device", "one axis", "axes: 1\nmock: {key: {}, hand: {}}\n"},
-      {"device", "forces", "axes: 1\ndriver: script\nscript: {forces: [{at_s: 0, n: 0}]}\n"},
+      {"device", "forces", R"(axes: 1
+driver: script
+script: {forces: [{at_s: 0, n: 0}]}
+)"},
       {"device", "pointer",
-       "axes: 1\ndriver: pointer\n"
-       "pointer: {key: {}, hand: {axes: [0], finger: {}}, sensor: {}}\n"}};
+       R"(axes: 1
+driver: pointer
+pointer: {key: {}, hand: {axes: [0], finger: {}}, sensor: {}}
+)"}};
   for (const char* kind : {"hold", "reach_and_press", "pluck", "bow", "grasp_and_drag", "knead"})
     all.push_back({"device", kind, device_with("gesture: {kind: " + std::string(kind) + "}")});
   return all;

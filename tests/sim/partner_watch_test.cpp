@@ -11,6 +11,7 @@
 #include "tests/engine/scenes.h"
 #include "tests/sim/loaded_scenes.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/filled.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::sim {
@@ -22,19 +23,22 @@ using engine::World;
 
 /// 25 masses on a square, all drawn to its middle and pushing each other off from 20 mm on.
 std::string gathering_text(const std::string& stiffness) {
-  return "cordis: 1\nname: gathering\nspace: 2\nstep: {rate_hz: 1000}\n"
-         "liaisons:\n"
-         "  tension: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}\n"
-         "  push: {kind: state_machine, stiffness_n_per_m: " +
-         stiffness +
-         ", pulls: false}\n"
-         "matter:\n"
-         "  middle: {kind: fixed, at_m: [0.1, 0.1]}\n"
-         "  crowd: {kind: lattice, structure: square, corner_m: [0, 0], counts: [5, 5], spacing_m: "
-         "0.05, mass_kg: 0.001}\n"
-         "links:\n"
-         "  - {liaison: tension, between: [middle, crowd], rest_m: 0}\n"
-         "  - {liaison: push, within: crowd, rest_m: 0.02, range_m: 0.02}\n";
+  return test::filled(R"(cordis: 1
+name: gathering
+space: 2
+step: {rate_hz: 1000}
+liaisons:
+  tension: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}
+  push: {kind: state_machine, stiffness_n_per_m: <stiffness>, pulls: false}
+matter:
+  middle: {kind: fixed, at_m: [0.1, 0.1]}
+  crowd: {kind: lattice, structure: square, corner_m: [0, 0], counts: [5, 5], spacing_m: 0.05,
+          mass_kg: 0.001}
+links:
+  - {liaison: tension, between: [middle, crowd], rest_m: 0}
+  - {liaison: push, within: crowd, rest_m: 0.02, range_m: 0.02}
+)",
+                      {{"stiffness", stiffness}});
 }
 
 TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
@@ -61,7 +65,7 @@ TEST(PartnerWatch, SeesInItsStepThatMorePartnersCameThanCertified) {
   }
   ASSERT_TRUE(passed) << "the crowd gathers";
   const std::string text = crowding_text(simulation.scene(), *simulation.partners().nearest());
-  EXPECT_NE(text.find("a mass of push of sets (t:13) touches"), std::string::npos) << text;
+  EXPECT_NE(text.find("a mass of push of sets (t:14) touches"), std::string::npos) << text;
   EXPECT_NE(text.find("certified up to " + std::to_string(certified)), std::string::npos) << text;
 
   // The bound from above on K' + 2 Z' counts the partners that are there.
@@ -130,10 +134,16 @@ TEST(PartnerWatch, LooksWithoutAllocation) {
 
 TEST(PartnerWatch, HasNothingToSayWhereGeometryGuaranteesTheNumber) {
   const auto loaded = loaded_scene_of(
-      "cordis: 1\nname: pair\nspace: 1\nstep: {rate_hz: 1000}\n"
-      "liaisons: {push: {kind: state_machine, stiffness_n_per_m: 10, pulls: false}}\n"
-      "matter:\n  s: {kind: mass, mass_kg: 0.1, at_m: [0, 0.005]}\n"
-      "links:\n  - {liaison: push, within: s, rest_m: 0.01, range_m: 0.01}\n");
+      R"(cordis: 1
+name: pair
+space: 1
+step: {rate_hz: 1000}
+liaisons: {push: {kind: state_machine, stiffness_n_per_m: 10, pulls: false}}
+matter:
+  s: {kind: mass, mass_kg: 0.1, at_m: [0, 0.005]}
+links:
+  - {liaison: push, within: s, rest_m: 0.01, range_m: 0.01}
+)");
   EventRoom events(1);
   loaded->simulation.advance(1, events);
   EXPECT_FALSE(loaded->simulation.partners().nearest().has_value());

@@ -10,6 +10,7 @@
 
 #include "sim_node/run/simulation.h"
 #include "sim_node/scene/sections/scene_reader.h"
+#include "tests/support/filled.h"
 #include "tests/support/test_seed.h"
 
 namespace cordis::sim {
@@ -84,16 +85,28 @@ TEST(PortBody, AHandOfTheStiffnessThatIsNamedStaysStill) {
     const auto decade = [&](double low, double high) {
       return std::to_string(low * std::pow(high / low, any(random)));
     };
-    const scene::Scene scene = sound(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  nail: {kind: fixed, at_m: -1}\n"
-        "  s: {kind: points, at_m: [0, 0.1, 0.2, 0.3], mass_kg: [" +
-        decade(0.01, 1) + ", " + decade(0.01, 1) + ", " + decade(0.01, 1) + ", " + decade(0.01, 1) +
-        "], medium_viscosity_n_s_per_m: " + decade(0.001, 1) +
-        "}\nliaisons: {k: {kind: spring_damper, stiffness_n_per_m: " + decade(10, 3000) +
-        ", viscosity_n_s_per_m: " + decade(0.001, 1) +
-        "}}\nlinks:\n  - {liaison: k, between: [\"s[0..2]\", \"s[1..3]\"]}\n"
-        "  - {liaison: k, between: [nail, \"s[0]\"]}\n"
-        "ports: {hand: {device: d, axes: [0], role: liaison, of: s}}\n");
+    const scene::Scene scene = sound(test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter:
+  nail: {kind: fixed, at_m: -1}
+  s: {kind: points, at_m: [0, 0.1, 0.2, 0.3],
+      mass_kg: [<mass_kg>, <mass_kg_2>, <mass_kg_3>, <mass_kg_4>],
+      medium_viscosity_n_s_per_m: <medium_viscosity_n_s_per_m>}
+liaisons: {k: {kind: spring_damper, stiffness_n_per_m: <stiffness_n_per_m>,
+               viscosity_n_s_per_m: <viscosity_n_s_per_m>}}
+links:
+  - {liaison: k, between: ["s[0..2]", "s[1..3]"]}
+  - {liaison: k, between: [nail, "s[0]"]}
+ports: {hand: {device: d, axes: [0], role: liaison, of: s}}
+)",
+                                                  {{"mass_kg", decade(0.01, 1)},
+                                                   {"mass_kg_2", decade(0.01, 1)},
+                                                   {"mass_kg_3", decade(0.01, 1)},
+                                                   {"mass_kg_4", decade(0.01, 1)},
+                                                   {"medium_viscosity_n_s_per_m", decade(0.001, 1)},
+                                                   {"stiffness_n_per_m", decade(10, 3000)},
+                                                   {"viscosity_n_s_per_m", decade(0.001, 1)}}));
     const plan::LiaisonGraph graph = plan::liaison_graph(scene.network);
     const scene::Port& port = scene.ports.front();
     // With a force that is not late and held for one step alone, the limit is that of the scheme.
@@ -116,14 +129,17 @@ TEST(PortBody, AHandOfTheStiffnessThatIsNamedStaysStill) {
 
 TEST(PortBody, IsBrakedForCertainByWhatNoneOfItsMassesEscapes) {
   const auto viscosity = [](const std::string& core, const std::string& skin) {
-    const scene::Scene scene = sound(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  core: {kind: mass, at_m: 0, "
-        "mass_kg: 1, medium_viscosity_n_s_per_m: " +
-        core +
-        "}\n  skin: {kind: mass, at_m: 1, mass_kg: 0.001, medium_viscosity_n_s_per_m: " + skin +
-        "}\nliaisons: {k: {kind: spring, stiffness_n_per_m: 10, rest_m: 1}}\n"
-        "links: [{liaison: k, between: [core, skin]}]\n"
-        "ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}\n");
+    const scene::Scene scene = sound(test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter:
+  core: {kind: mass, at_m: 0, mass_kg: 1, medium_viscosity_n_s_per_m: <core>}
+  skin: {kind: mass, at_m: 1, mass_kg: 0.001, medium_viscosity_n_s_per_m: <skin>}
+liaisons: {k: {kind: spring, stiffness_n_per_m: 10, rest_m: 1}}
+links: [{liaison: k, between: [core, skin]}]
+ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}
+)",
+                                                  {{"core", core}, {"skin", skin}}));
     return min_load_of(plan::liaison_graph(scene.network), scene, scene.ports.front()).viscosity;
   };
   EXPECT_EQ(viscosity("0", "5"), 0.0);
@@ -140,16 +156,27 @@ TEST(PortBody, AHandThatIsLateStaysStillBelowTheStiffnessThatIsNamed) {
     const auto decade = [&](double low, double high) {
       return std::to_string(low * std::pow(high / low, any(random)));
     };
-    const scene::Scene scene = sound(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  nail: {kind: fixed, at_m: 2}\n"
-        "  core: {kind: mass, at_m: 0, mass_kg: " +
-        decade(0.1, 1) + ", medium_viscosity_n_s_per_m: " + decade(0.1, 2) +
-        "}\n  skin: {kind: mass, at_m: 1, mass_kg: " + decade(0.01, 0.1) +
-        "}\nliaisons:\n  k: {kind: spring, rest_m: 1, stiffness_n_per_m: " + decade(5, 50) +
-        "}\n  z: {kind: damper, viscosity_n_s_per_m: " + decade(0.1, 4) +
-        "}\nlinks:\n  - {liaison: k, between: [core, skin]}\n  - {liaison: z, between: [skin, "
-        "nail]}\n"
-        "ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}\n");
+    const scene::Scene scene = sound(test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter:
+  nail: {kind: fixed, at_m: 2}
+  core: {kind: mass, at_m: 0, mass_kg: <mass_kg>,
+         medium_viscosity_n_s_per_m: <medium_viscosity_n_s_per_m>}
+  skin: {kind: mass, at_m: 1, mass_kg: <mass_kg_2>}
+liaisons:
+  k: {kind: spring, rest_m: 1, stiffness_n_per_m: <stiffness_n_per_m>}
+  z: {kind: damper, viscosity_n_s_per_m: <viscosity_n_s_per_m>}
+links:
+  - {liaison: k, between: [core, skin]}
+  - {liaison: z, between: [skin, nail]}
+ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}
+)",
+                                                  {{"mass_kg", decade(0.1, 1)},
+                                                   {"medium_viscosity_n_s_per_m", decade(0.1, 2)},
+                                                   {"mass_kg_2", decade(0.01, 0.1)},
+                                                   {"stiffness_n_per_m", decade(5, 50)},
+                                                   {"viscosity_n_s_per_m", decade(0.1, 4)}}));
     const scene::Port& port = scene.ports.front();
     const plan::PortLoad load = min_load_of(plan::liaison_graph(scene.network), scene, port);
     const double stiffness =
@@ -195,13 +222,18 @@ ports: {hand: {device: d, axes: [0], role: liaison, of: bob}}
 TEST(PortBody, SaysWhatItCannotMove) {
   const auto problem = [](const std::string& port) {
     config::Problems problems;
-    scene::load_scene_text(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter:\n  nail: {kind: fixed, at_m: 0}\n"
-        "  bob: {kind: mass, mass_kg: 1, at_m: [1, 2, 3]}\nports:\n  a: {device: d, axes: [0], "
-        "role: "
-        "liaison, of: \"bob[0..1]\"}\n  b: " +
-            port + "\n",
-        "t", problems);
+    scene::load_scene_text(test::filled(R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter:
+  nail: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 1, at_m: [1, 2, 3]}
+ports:
+  a: {device: d, axes: [0], role: liaison, of: "bob[0..1]"}
+  b: <port>
+)",
+                                        {{"port", port}}),
+                           "t", problems);
     return problems.all().empty() ? "" : problems.all()[0].message;
   };
   EXPECT_EQ(problem("{device: d, axes: [1], role: liaison, of: \"bob[2]\"}"), "");
@@ -219,9 +251,12 @@ TEST(PortBody, HasNoMassThatAnotherPortPushes) {
   const auto problem = [](const std::string& ports) {
     config::Problems problems;
     scene::load_scene_text(
-        "cordis: 1\nspace: 1\nstep: {rate_hz: 1000}\nmatter: {bob: {kind: mass, mass_kg: 1, at_m: "
-        "1}}\nports:\n" +
-            ports,
+        R"(cordis: 1
+space: 1
+step: {rate_hz: 1000}
+matter: {bob: {kind: mass, mass_kg: 1, at_m: 1}}
+ports:
+)" + ports,
         "t", problems);
     return problems.all().empty() ? "" : problems.all()[0].message;
   };

@@ -19,6 +19,7 @@
 #include "sim_node/checks/device_check.h"
 #include "sim_node/devices/refused_devices.h"
 #include "sim_node/scene/sections/scene_reader.h"
+#include "tests/support/filled.h"
 #include "tests/support/rounds.h"
 
 namespace cordis::sim {
@@ -28,24 +29,23 @@ namespace {
 /// @param needs  further keys of the port
 scene::Scene walls_of(const std::string& stiffness, const std::string& needs = {}) {
   config::Problems problems;
-  scene::Scene scene = scene::load_scene_text(
-      R"(cordis: 1
+  scene::Scene scene =
+      scene::load_scene_text(test::filled(R"(cordis: 1
 space: 1
 step: {rate_hz: 1000}
 matter:
   ground: {kind: fixed, at_m: 0}
   bob: {kind: mass, mass_kg: 1, at_m: 0}
 liaisons:
-  wall: {kind: spring, stiffness_n_per_m: )" +
-          stiffness +
-          "}\nports:\n  key: {device: keyboard, axes: 0, role: mass, at_m: 0, coupling: direct" +
-          needs +
-          R"(}
+  wall: {kind: spring, stiffness_n_per_m: <stiffness>}
+ports:
+  key: {device: keyboard, axes: 0, role: mass, at_m: 0, coupling: direct<needs>}
 links:
   - {liaison: wall, between: [key, ground]}
   - {liaison: wall, between: [key, bob]}
 )",
-      "t", problems);
+                                          {{"stiffness", stiffness}, {"needs", needs}}),
+                             "t", problems);
   EXPECT_EQ(problems.text(), "");
   return scene;
 }

@@ -2,14 +2,16 @@
 #include "sim_node/checks/rate_check.h"
 
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::sim {
 namespace {
 
 /// A mass on a spring, 16 vibrations per second.
 scene::Scene settled(const std::string& step, config::Problems& problems) {
-  scene::Scene scene = scene::load_scene_text("cordis: 1\nspace: 1\nstep: {" + step +
-                                                  R"(gesture_rate_hz: 10, integrator: cordis}
+  scene::Scene scene = scene::load_scene_text(test::filled(R"(cordis: 1
+space: 1
+step: {<step>gesture_rate_hz: 10, integrator: cordis}
 accuracy: {tolerance: 0.001, band_hz: 16}
 liaisons: {holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}}
 matter:
@@ -17,6 +19,7 @@ matter:
   bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}
 links: [{liaison: holder, between: [ground, bob]}]
 )",
+                                                           {{"step", step}}),
                                               "t", problems);
   select_rate(scene, problems);
   return scene;

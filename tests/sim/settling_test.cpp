@@ -2,18 +2,23 @@
 #include "sim_node/checks/settling.h"
 
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::sim {
 namespace {
 
 std::string chain(const std::string& settle, const std::string& ends = "first_fixed") {
-  return "cordis: 1\nspace: 2\nstep: {rate_hz: 1000}\n" + settle + R"(
+  return test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+<settle>
 world: {gravity_m_per_s2: [0, -10]}
 matter:
-  chain: {kind: string, count: 5, from_m: [0, 0], to_m: [0, -0.4], ends: )" +
-         ends + R"(, mass_kg: 0.01, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.01,
+  chain: {kind: string, count: 5, from_m: [0, 0], to_m: [0, -0.4], ends: <ends>, mass_kg: 0.01,
+          stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.01,
           velocity_m_per_s: [1, 0]}
-)";
+)",
+                      {{"settle", settle}, {"ends", ends}});
 }
 
 scene::Scene scene_at_rest(const std::string& text, config::Problems& problems) {
@@ -52,10 +57,10 @@ TEST(Settling, RefusesWhatDoesNotComeToRest) {
   scene_at_rest(chain("settle: {until_n: 1.0e-9, steps: 50}", "free"), problems);
 
   EXPECT_EQ(problems.text(),
-            "t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]\n"
-            "settle: {until_n: 1.0e-9, steps: 50}\n"
-            "        ^\n"
-            "  hint: hold what falls or slides, or write a larger until_n or steps");
+            R"(t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]
+settle: {until_n: 1.0e-9, steps: 50}
+        ^
+  hint: hold what falls or slides, or write a larger until_n or steps)");
 }
 
 TEST(Settling, ReadsItsKeys) {

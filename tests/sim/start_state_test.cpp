@@ -10,6 +10,7 @@
 #include "sim_node/run/request_maker.h"
 #include "sim_node/run/simulation.h"
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::sim {
 namespace {
@@ -31,9 +32,15 @@ class StartState : public testing::Test {
   /// A bow that sticks and slips, a drive, a Maxwell element and a heap; with keys at the top level.
   std::string scene(const std::string& name, const std::string& keys,
                     const std::string& mass = "0.01", const std::string& step = "") const {
-    return write(name, "cordis: 1\nname: \"a 'heap'\"\nspace: 2\nstep: {rate_hz: 44100" + step +
-                           "}\n" + keys +
-                           R"(world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.001}
+    return write(
+        name, test::filled(R"(cordis: 1
+name: "a 'heap'"
+space: 2
+step: {rate_hz: 44100<step>}
+)",
+                           {{"step", step}}) +
+                  keys +
+                  test::filled(R"(world: {gravity_m_per_s2: [0, -9.81], viscosity_n_s_per_m: 0.001}
 liaisons:
   land: {kind: state_machine, stiffness_n_per_m: 500, viscosity_n_s_per_m: 0.2, pulls: false, range: rest,
          friction: {static: 0.5, stiffness_n_per_m: 300}}
@@ -45,8 +52,8 @@ liaisons:
       unhooked: {viscosity_n_s_per_m: 0.01, exits: [{to: hooked, when: age_s > 0.004, rest: here}]}
 matter:
   floor: {kind: plane, at_m: [0, 0], normal: y}
-  heap: {kind: points, at_m: [[0, 0.03], [0.03, 0.05], [0.01, 0.09]], radius_m: 0.02, mass_kg: )" +
-                           mass + R"(,
+  heap: {kind: points, at_m: [[0, 0.03], [0.03, 0.05], [0.01, 0.09]], radius_m: 0.02,
+         mass_kg: <mass>,
          velocity_m_per_s: [[0.1, 0], [-0.2, 0], [0, -1]]}
   bow: {kind: fixed, driven: {position_m: ["0.2 + 0.3 * time_s", 0.2]}}
   string: {kind: mass, mass_kg: 0.02, at_m: [0.2, 0.1]}
@@ -56,7 +63,8 @@ links:
   - {liaison: land, between_sets: [heap, floor]}
   - {liaison: rosin, between: [bow, string]}
   - {liaison: glue, between: [nail, string]}
-)");
+)",
+                               {{"mass", mass}}));
   }
 
   static std::shared_ptr<const scene::Scene> planned(const std::string& file) {
@@ -82,7 +90,11 @@ links:
 
   /// Two parallel springs, merged where `keys` say so.
   std::string springs(const std::string& name, const std::string& keys) const {
-    return write(name, "cordis: 1\nname: springs\nspace: 1\nstep: {rate_hz: 4000}\n" + keys + R"(
+    return write(name, test::filled(R"(cordis: 1
+name: springs
+space: 1
+step: {rate_hz: 4000}
+<keys>
 liaisons:
   spring: {kind: spring, stiffness_n_per_m: 100}
   rubber: {kind: spring, stiffness_n_per_m: 7}
@@ -90,7 +102,8 @@ matter: {wall: {kind: fixed, at_m: 0}, bob: {kind: mass, mass_kg: 0.1, at_m: 0.0
 links:
   - {liaison: spring, between: [wall, bob], rest_m: 0}
   - {liaison: rubber, between: [wall, bob], rest_m: 0}
-)");
+)",
+                                    {{"keys", keys}}));
   }
 
   static Simulation& now(PreparedRequest& prepared) { return prepared.request.scene->simulation; }
@@ -148,8 +161,11 @@ TEST_F(StartState, IsTheStateThatWasSaved) {
 
 TEST_F(StartState, HoldsNoForceOfAHandWhosePortIsGone) {
   const auto pair = [this](const std::string& name, const std::string& keys) {
-    return write(name, "cordis: 1\nname: pair\nspace: 1\nstep: {rate_hz: 1000}\n" + keys +
-                           "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 1]}}\n");
+    return write(name, R"(cordis: 1
+name: pair
+space: 1
+step: {rate_hz: 1000}
+)" + keys + "matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 1]}}\n");
   };
   Simulation before(
       planned(pair("whole.yaml", "ports: {hand: {device: d, axes: [0], role: liaison, of: a}}\n")),
@@ -241,7 +257,11 @@ TEST_F(StartState, OfManyMatsIsReadBack) {
   for (int i = 0; i < 100'000; ++i) places += "[0," + std::to_string(i) + ",0],";
   const auto fallen = [&](const std::string& name, const std::string& keys) {
     return write(name,
-                 "cordis: 1\nname: dust\nspace: 3\nstep: {rate_hz: 1000}\n" + keys +
+                 R"(cordis: 1
+name: dust
+space: 3
+step: {rate_hz: 1000}
+)" + keys +
                      "matter: {dust: {kind: points, mass_kg: 1, velocity_m_per_s: [0.1, 0, 1], "
                      "at_m: [" +
                      places + "]}}\n");

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::sim {
 namespace {
@@ -75,7 +76,10 @@ TEST(TickDivision, GoesToAnyTickAsByCounting) {
 
 /// A key alone on a spring, and its position as a signal of each step.
 std::string key_text(double step_rate_hz) {
-  return "cordis: 1\nname: key\nspace: 1\nstep: {rate_hz: " + std::to_string(step_rate_hz) + R"(}
+  return test::filled(R"(cordis: 1
+name: key
+space: 1
+step: {rate_hz: <step_rate_hz>}
 liaisons: {spring: {kind: spring_damper, stiffness_n_per_m: 1, viscosity_n_s_per_m: 0}}
 matter: {bob: {kind: mass, mass_kg: 1, at_m: 0}}
 ports: {key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0}}
@@ -83,7 +87,8 @@ links: [{liaison: spring, between: [key, bob], rest_m: 0}]
 signals:
   bob: {of: bob, quantity: position}
   key: {of: key, quantity: position, rate: step}
-)";
+)",
+                      {{"step_rate_hz", std::to_string(step_rate_hz)}});
 }
 
 /// The largest distance of a key from the straight line v t that its samples lie on, once it is

@@ -1,6 +1,7 @@
 // tests/support/support_test.cpp -- what the tests of processes and clocks rely on.
 #include <csignal>
 #include <cstdlib>
+#include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
+#include "tests/support/filled.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::test {
@@ -27,6 +29,15 @@ TEST(Eventually, EndsInVainAndSaysSo) {
   const bool held = eventually([] { return false; }, 3ms);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "a condition did not hold within 0.003 s\n");
   EXPECT_FALSE(held);
+}
+
+TEST(Filled, PutsEachValueIntoItsGapsAndNowhereElse) {
+  EXPECT_EQ(filled("m: {k: <k>, z: <z>}\nn: {k: <k>, when: x < 1}\n", {{"k", "30"}, {"z", ""}}),
+            R"(m: {k: 30, z: }
+n: {k: 30, when: x < 1}
+)");
+  EXPECT_EQ(filled("<a>", {{"a", "<a><a>"}}), "<a><a>");
+  EXPECT_THROW(static_cast<void>(filled("m: <k>\n", {{"z", "1"}})), std::invalid_argument);
 }
 
 TEST(ChildProcess, GivesTheOutputAndTheExitCode) {

@@ -44,7 +44,13 @@ TEST(VizConfig, ReadsItsKeys) {
 
 TEST(VizConfig, FindsAllThatIsWrongAtOnceAndWhere) {
   config::Problems problems;
-  read("address: lab\nport: 65536\nrate_hz: 0.5\nprot: 1\nscenes: [[a]]\n", problems);
+  read(R"(address: lab
+port: 65536
+rate_hz: 0.5
+prot: 1
+scenes: [[a]]
+)",
+       problems);
 
   ASSERT_EQ(problems.all().size(), 5u);
   for (const auto& problem : problems.all()) {
