@@ -7,6 +7,7 @@
 //   yaml scene     a whole scene         yaml scene part   top level keys, laid on the scene below
 //   yaml launch    a whole launch file   yaml nodes        its nodes        yaml device   a device file
 //   yaml change    what the tutorial changes in the scene before; tests/scene/tutorial_test.cpp plays it
+//   sh foreign     commands that build the programs of examples/foreign_device and play a session with one, the last until it is stopped
 //   c              a program for a board
 //   python         a program that reads a take, or a table of it
 //   text           a drawing or the words of a program
@@ -22,6 +23,7 @@ import test from 'node:test';
 
 const [, , root, programs] = process.argv;
 const LONGEST_MS = 120_000;
+const LONGEST_BUILD_MS = 600_000; // of a few files in C, on a machine that is shared with others
 
 const folder = mkdtempSync(join(tmpdir(), 'cordis-examples-'));
 process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
@@ -35,16 +37,16 @@ const environment = {
 };
 
 /** Runs a line of a shell in the copy. @return its exit code and all it said. */
-function shell(line) {
+function shell(line, timeout = LONGEST_MS) {
   return new Promise((resolve) => {
-    const options = { cwd: folder, env: environment, timeout: LONGEST_MS, maxBuffer: 1 << 26 };
+    const options = { cwd: folder, env: environment, timeout, maxBuffer: 1 << 26 };
     execFile('bash', ['-c', line], options, (error, out, complaints) =>
       resolve({ code: error ? error.code ?? error.signal : 0, text: out + complaints }));
   });
 }
 
-async function runs(line, origin, codes = [0]) {
-  const { code, text } = await shell(line);
+async function runs(line, origin, codes = [0], timeout = LONGEST_MS) {
+  const { code, text } = await shell(line, timeout);
   assert.ok(codes.includes(code), `${origin}: '${line}' ends with ${code}\n${text}`);
   return text;
 }
@@ -58,7 +60,7 @@ async function someAtOnce(items, use) {
 
 const documents = [
   ...readdirSync(join(root, 'docs')).filter((name) => name.endsWith('.md')).map((name) => join('docs', name)),
-  'README.md', 'CONTRIBUTING.md', join('idl', 'README.md'),
+  'README.md', 'CONTRIBUTING.md', join('idl', 'README.md'), join('examples', 'foreign_device', 'README.md'),
 ].map((name) => ({ name, text: readFileSync(join(root, name), 'utf8') }));
 
 /** All blocks of code: where, of what kind, the path that is written to, the text. */
@@ -95,7 +97,7 @@ const isOfTake = (line) => line.includes('.mcap') && !line.startsWith('cordis re
 const ofVerb = (verb) => [...all].filter(([line]) => line.split(' ')[1] === verb);
 
 test('every block of code says what it is', () => {
-  const KINDS = ['sh', 'sh by hand', 'yaml scene', 'yaml scene part', 'yaml launch', 'yaml nodes', 'yaml device', 'yaml change', 'c', 'python', 'text'];
+  const KINDS = ['sh', 'sh by hand', 'sh foreign', 'yaml scene', 'yaml scene part', 'yaml launch', 'yaml nodes', 'yaml device', 'yaml change', 'c', 'python', 'text'];
   for (const { name, kind } of blocks) assert.ok(KINDS.includes(kind), `${name}: a block of '${kind}'`);
   for (const { name } of blocksOf('yaml change')) assert.equal(name, 'docs/tutorial.md');
   for (const document of documents) {
@@ -201,13 +203,25 @@ test('the example of a board compiles', async () => {
   }
 });
 
+test('a program of another vendor is built and plays a session, as far as this machine has CycloneDDS', async (context) => {
+  const [block, ...others] = blocksOf('sh foreign');
+  assert.ok(block && others.length === 0);
+  if ((await shell('command -v idlc && command -v cmake')).code !== 0) return context.skip('no CycloneDDS here (Debian: cyclonedds-dev, cyclonedds-tools)');
+  for (const below of ['examples', 'idl']) cpSync(join(root, below), join(folder, below), { recursive: true });
+  const [build, ...lines] = block.code.trim().split('\n');
+  await runs(build, block.name, [0], LONGEST_BUILD_MS);
+  // A sample of the device has reached the session: its program runs, and has found the scene.
+  const sample = 'timeout 20 cordis echo foreign gesture/positions -n 1';
+  await duringProgram('bash', ['-c', lines.join('\n')], { detached: true }, sample, async () => {});
+});
+
 test('cordis run', async () => {
   for (const [line, origin] of ofVerb('run')) await runs(line.includes('--duration') ? line : `${line} --duration 300ms`, origin);
 });
 
-/** Starts `cordis` with these words, waits until a line works, does what is wanted, and ends it. */
-async function during(words, ready, use) {
-  const program = spawn(join(programs, 'cordis'), words, { cwd: folder, env: environment, stdio: ['ignore', 'pipe', 'pipe'] });
+/** Starts a program, waits until a line works, does what is wanted, and ends it. @param options  `detached`: with all that it has started */
+async function duringProgram(path, words, options, ready, use) {
+  const program = spawn(path, words, { cwd: folder, env: environment, stdio: ['ignore', 'pipe', 'pipe'], ...options });
   let said = '';
   for (const stream of [program.stdout, program.stderr]) stream.on('data', (text) => (said += text));
   const ended = new Promise((resolve) => program.on('close', resolve));
@@ -216,10 +230,14 @@ async function during(words, ready, use) {
     while ((await shell(ready)).code !== 0) assert.ok(Date.now() < end, `'${words.join(' ')}' does not start\n${said}`);
     await use();
   } finally {
-    program.kill('SIGINT');
+    if (options.detached) process.kill(-program.pid, 'SIGTERM');
+    else program.kill('SIGINT');
     await ended;
   }
 }
+
+/** Likewise `cordis` with these words. */
+const during = (words, ready, use) => duringProgram(join(programs, 'cordis'), words, {}, ready, use);
 
 const isForPlayer = (line) => / (seek|rate) /.test(line); // what a player alone understands
 
