@@ -140,14 +140,14 @@ matter:
   pushed: {kind: mass, displacement_m: [0, 0], mass_kg: 0.1, at_m: [0, 3], driven: {force_n: [sin(time_s), 0]}}
   some: {kind: points, displacement_m: [0, 0], at_m: [[2, 0], [3, 0]], mass_kg: [0.1, 0.2], velocity_m_per_s: [[0, 0], [0, 0]], radius_m: 0.01, fixed: [0]}
   string: {kind: string, displacement_m: [0, 0], count: 4, mass_kg: 0.01, from_m: [4, 0], to_m: [5, 0], ends: fixed, stiffness_n_per_m: 100, tension_n: 1}
-  loop: {kind: ring, displacement_m: [0, 0], count: 8, mass_kg: 0.01, center_m: [6, 0], radius_m: 0.1, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}
+  loop: {kind: ring, displacement_m: [0, 0], velocity_m_per_s: [0, 0], count: 8, mass_kg: 0.01, center_m: [6, 0], radius_m: 0.1, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}
   net: {kind: grid, displacement_m: [0, 0], rows: 2, columns: 2, mass_kg: 0.01, corner_m: [7, 0], spacing_m: 0.1, border: fixed, stiffness_n_per_m: 100, rest_m: 0.1, shear_stiffness_n_per_m: 10, shear_viscosity_n_s_per_m: 0.1}
   crystal: {kind: lattice, displacement_m: [0, 0], structure: square, spacing_m: 0.1, corner_m: [8, 0], counts: [2, 2], mass_kg: 0.01, stiffness_n_per_m: 100}
   cut: {kind: lattice, structure: triangular, spacing_m: 0.1, region: {from_m: [9, 0], to_m: [9.5, 0.5]}, mass_kg: 0.01}
   plate: {kind: disc, displacement_m: [0, 0], center_m: [10, 0], radius_m: 0.2, spacing_m: 0.1, structure: rings, mass_kg: 0.01, stiffness_n_per_m: 100}
   heap: {kind: pack, displacement_m: [0, 0], ball: {mass_kg: 0.01, radius_m: 0.01}, region: {center_m: [11, 0], radius_m: 0.1}, count: 3, seed: 1}
   full: {kind: pack, ball: {mass_kg: 0.01, radius_m: 0.01}, region: {from_m: [12, 0], to_m: [12.1, 0.1]}, fill: 0.1}
-  bag: {kind: skin, displacement_m: [0, 0], center_m: [13, 0], radius_m: 0.1, count: 8, mass_kg: 0.01, stiffness_n_per_m: 100, core: {mass_kg: 0.1, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0.1}}
+  bag: {kind: skin, displacement_m: [0, 0], velocity_m_per_s: [0, 0], center_m: [13, 0], radius_m: 0.1, count: 8, mass_kg: 0.01, stiffness_n_per_m: 100, core: {mass_kg: 0.1, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0.1}}
   house: {kind: skin, corners_m: [[14, 0], [15, 0], [14, 1]], spacing_m: 0.1, mass_kg: 0.01, stiffness_n_per_m: 100}
   bar: {kind: beam, displacement_m: [0, 0], cells: 2, from_m: [16, 0], to_m: [16.2, 0], height_m: 0.1, mass_kg: 0.01, stiffness_n_per_m: 100, ends: first_fixed}
   floor: {kind: plane, at_m: [0, -1], normal: y, sides: both}
