@@ -49,13 +49,13 @@ std::string clock_of(const node::SessionRecord& session) {
   return config::clock_word(launch.clock);
 }
 
-struct Row {
+struct SessionRow {
   std::string nodes;
   double age = 0.0;
 };
 
-Row row_of(const node::SessionRecord& session) {
-  Row row;
+SessionRow row_of(const node::SessionRecord& session) {
+  SessionRow row;
   for (const node::SessionMember& member : session.members) {
     for (const std::string& node : member.nodes) row.nodes += (row.nodes.empty() ? "" : ",") + node;
     row.age = std::max(row.age, age_s(member));
@@ -127,7 +127,7 @@ int list(const ListWords& words) {
   std::fputs(fmt::format("{:<{}}  domain  clock     age      nodes\n", "session", width).c_str(),
              stdout);
   for (const node::SessionRecord& session : sessions) {
-    const Row row = row_of(session);
+    const SessionRow row = row_of(session);
     node::print_text(stdout,
                      fmt::format("{:<{}}  {:>6}  {:<8}  {:<7}  {}\n", session.session, width,
                                  session.domain, clock_of(session), age_text(row.age), row.nodes));

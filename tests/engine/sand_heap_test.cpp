@@ -1,5 +1,6 @@
 // tests/engine/sand_heap_test.cpp -- columns of sand that end as heaps, beside those of LAMMPS.
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <map>
@@ -87,6 +88,9 @@ double angle_deg(const json& data, std::uint32_t seed, double mu) {
   return std::atan2(height, width) * 180.0 / std::numbers::pi;
 }
 
+// All of them, or one under sanitizers: each takes the same way through the code.
+constexpr auto kMaxFrictions = static_cast<std::size_t>(rounds(10));
+
 TEST(SandHeap, HasTheAngleOfReposeThatLammpsFinds) {
   const json data = reference("R24_lammps_sand_heap");
   std::map<double, std::vector<double>> of_lammps;
@@ -96,6 +100,7 @@ TEST(SandHeap, HasTheAngleOfReposeThatLammpsFinds) {
     const std::uint32_t seed = heap["seed"];
     of_lammps[mu].push_back(number(heap["angle_deg"]));
     if (seed > static_cast<std::uint32_t>(rounds(3))) continue;
+    if (!of_cordis.contains(mu) && of_cordis.size() == kMaxFrictions) continue;
     of_cordis[mu].push_back(angle_deg(data, seed, mu));
   }
   const auto mean = [](const std::vector<double>& all) {

@@ -28,6 +28,9 @@ function sourcesIn(file) {
   return [...fs.readFileSync(file, 'utf8').matchAll(/^#include "(.*)"$/gm)].map((match) => match[1]);
 }
 
+/// The folder whose sources are read together. The verbs of `cli` have a folder each, and mostly one source.
+const folderOf = (name) => path.dirname(name).split('/').slice(0, name.startsWith('cli/') ? 1 : 2).join('/');
+
 /// The sources that the tree compiles, each once though two libraries compile the engine, in groups of the same folder and
 /// the same options.
 function groups() {
@@ -41,7 +44,7 @@ function groups() {
       if (name.startsWith('..') || member.startsWith(build + path.sep) || name.startsWith('tests/')) continue;
       if (!name.startsWith(beginning) || !name.endsWith('.cpp') || seen.has(name)) continue;
       seen.add(name);
-      const key = JSON.stringify([path.dirname(name).split('/').slice(0, 2).join('/'), options]);
+      const key = JSON.stringify([folderOf(name), options]);
       if (!groups.has(key)) groups.set(key, { options, members: [] });
       groups.get(key).members.push({ file: member, object });
     }
