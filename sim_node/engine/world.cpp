@@ -1,6 +1,7 @@
 // sim_node/engine/world.cpp
 #include "sim_node/engine/world.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/core/float_mode.h"
 #include "sim_node/engine/core/state_hash.h"
+#include "sim_node/engine/description/driving_law.h"
 #include "sim_node/engine/integrators/world_state.h"
 #include "sim_node/engine/variables.h"
 
@@ -186,7 +188,12 @@ const Columns& World::positions() const noexcept {
 
 Energy World::energy() const noexcept {
   const FloatMode mode;
-  return state_->scheme->energy(*state_);
+  Energy energy = state_->scheme->energy(*state_);
+  const std::vector<StateMachine>& laws = state_->table.state_machines();
+  const auto drives = [](const StateMachine& law) { return may_drive(law); };
+  if (energy.dissipated < 0.0 && std::none_of(laws.begin(), laws.end(), drives))
+    energy.brought_by_takers = -energy.dissipated;
+  return energy;
 }
 
 double World::dissipated() const noexcept {

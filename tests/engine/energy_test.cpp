@@ -304,6 +304,62 @@ TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
   EXPECT_LT(std::abs(after_swinging(state, 1e-4).elastic_error), 1e-3 * largest);
 }
 
+/// Springs and laws far beyond their force limit: what they store is what their limited tension gives
+/// back, and viscosity only takes.
+TEST(Energy, OfALawWithAForceLimitIsTheIntegralOfItsTension) {
+  constexpr double kLimit = 0.3;
+  const auto limited = [](double stiffness, const engine::Law& law, bool pulls) {
+    LinkState state;
+    state.stiffness = stiffness;
+    state.elasticity = law;
+    state.pulls = pulls;
+    state.force_limit = kLimit;
+    return state;
+  };
+  std::vector<LinkState> states;
+  for (const bool pulls : {true, false}) {
+    states.push_back(limited(100.0, {}, pulls));
+    states.push_back(limited(0.0, power_law(300.0, 1.5), pulls));
+    states.push_back(limited(20.0, power_law(3000.0, 3.0), pulls));
+    states.push_back(limited(20.0, table_law(), pulls));
+  }
+  states.push_back(limited(0.0, lennard_jones_law(1e-2, 0.1, 0.0), true));
+  states.push_back(limited(0.0, lennard_jones_law(1e-2, 0.1, 0.3), true));
+  states.push_back(limited(5.0, ring_law(), true));
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    for (const double viscosity : {0.0, 0.02}) {
+      for (const auto integrator :
+           {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog}) {
+        SCOPED_TRACE("law " + std::to_string(i) + ", viscosity " + std::to_string(viscosity));
+        LinkState state = states[i];
+        state.viscosity = viscosity;
+        NetworkDescription scene;
+        scene.dimension = 2;
+        scene.step = 2e-5;
+        scene.gravity = Vec3(0, -9.81, 0);
+        scene.integrator = integrator;
+        scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.2, 0.05, 0))};
+        scene.state_machines = {Behaving().state(state).state_machine};
+        scene.state_links = {{0, 1, 0, 0.1}};
+        World world = make_world(scene);
+        double min_taken = 0.0;
+        for (int n = 0; n < 20'000; ++n) {
+          world.step();
+          if (n % 50 != 0) continue;
+          const Energy energy = world.energy();
+          const double far = world.position(1).norm() + 1.0;
+          ASSERT_LT(std::abs(energy.elastic), kLimit * far + 0.02) << "step " << n;
+          ASSERT_LT(std::abs(energy.integration_error()), 2e-3 * energy.largest) << "step " << n;
+          ASSERT_GT(energy.dissipated, min_taken - 1e-4 * energy.largest) << "step " << n;
+          min_taken = std::max(min_taken, energy.dissipated);
+          const double taken = viscosity == 0.0 ? 0.0 : energy.dissipated;
+          ASSERT_NEAR(energy.dissipated, taken, 1e-4 * energy.largest) << "step " << n;
+        }
+      }
+    }
+  }
+}
+
 /// A ball on a floor that can only push, at K' = K dt^2 / m.
 Energy after_bouncing(double number, int step_count) {
   NetworkDescription scene;
@@ -332,6 +388,36 @@ TEST(Energy, OwnsUpToWhatAContactMakesWhoseStepIsTooLong) {
   EXPECT_GT(std::abs(wrong.integration_error()), 0.1 * wrong.largest);
   const Energy right = after_bouncing(0.001, 5'000);
   EXPECT_LT(std::abs(right.integration_error()), 0.01 * right.largest);
+}
+
+/// A mass that a dissipation slows down: its largest energy, and what no account explains.
+Energy after_slowing(const engine::Law& dissipation, double speed) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(1e-3, Vec3(0.1, 0, 0), Vec3(speed, 0, 0))};
+  LinkState state;
+  state.dissipation = dissipation;
+  scene.state_machines = {Behaving().state(state).state_machine};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  World world = make_world(scene);
+  for (int n = 0; n < 3; ++n) world.step();
+  return world.energy();
+}
+
+TEST(Energy, ThatALawBringsInWhichOnlyTakesIsAnIntegrationError) {
+  const Energy slow = after_slowing(power_law(0.2, 3.0), 0.1);
+  EXPECT_EQ(slow.brought_by_takers, 0.0);
+  EXPECT_LT(std::abs(slow.integration_error()), 1e-3 * slow.largest);
+
+  const Energy fast = after_slowing(power_law(0.2, 3.0), 10.0);
+  ASSERT_LT(fast.dissipated, -fast.initial) << "the step is too long";
+  EXPECT_EQ(fast.brought_by_takers, -fast.dissipated);
+  EXPECT_GT(fast.integration_error(), 0.5 * fast.largest);
+
+  const Energy driven = after_slowing(power_law(-0.2, 1.0), 0.1);
+  EXPECT_LT(driven.dissipated, 0.0);
+  EXPECT_EQ(driven.brought_by_takers, 0.0) << "such a law may drive";
 }
 
 /// The largest integration error over the largest energy of a mass on a linear spring at K' = K dt^2 / m.

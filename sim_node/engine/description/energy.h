@@ -32,7 +32,7 @@ struct Energy {
   double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
   double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
                             ///< else of the tension of a link that is not the slope of a potential:
-                            ///< a force limit, the cutting off of a clamped one, a function
+                            ///< the cutting off of a clamped one, a function
   double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
   double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
                             ///< sum of LinkEvent::energy
@@ -42,16 +42,22 @@ struct Energy {
                                ///< states in 1 dimension, and at changes of state
   double kinetic_excess = 0.0;  ///< m (v(n-1/2) + v(n+1/2))^2 / 8 over m v(n-1/2) v(n+1/2) / 2 at
                                 ///< the moment of the last forces, less that at step 0
-  double largest = 0.0;  ///< largest magnitude among the fields above, and that port_work ever had:
-                         ///< the scale for a relative residual
+  double brought_by_takers = 0.0;  ///< -dissipated where that is below 0 though no law of the scene
+                                   ///< may drive: a step that is too long has brought it in
+  double largest = 0.0;            ///< largest magnitude of an entry above,
+                                   ///< and that port_work ever had:
+                                   ///< the scale for a relative residual
 
   double total() const noexcept { return kinetic + elastic + gravity; }
   /// What the integration has put in (> 0) or taken (< 0) and no account explains [J]:
-  /// (kinetic + true potential + dissipated) - (initial + port_work + switching). The true potential
+  /// (kinetic + true potential + dissipated) - (initial + port_work + switching). Where no law may
+  /// drive, dissipated counts as at least 0: what only takes has brought in nothing. The true potential
   /// and the kinetic energy are those of the moment of the last forces, whatever works the steps have
   /// done. 0 but for terms of order dt^2 while a step is short enough; it grows where a motion
   /// diverges though the account closes.
-  double integration_error() const noexcept { return residual() - elastic_error + kinetic_excess; }
+  double integration_error() const noexcept {
+    return residual() - elastic_error + kinetic_excess + brought_by_takers;
+  }
   double residual() const noexcept {
     return total() - initial - port_work - switching + dissipated;
   }

@@ -39,7 +39,8 @@ struct Friction {
 /// with e the elongation and v its elongation rate, positive pulling the ends
 /// together; then without its positive part unless `pulls`, without its negative part unless
 /// `pushes`, then within +- force_limit. In the step in which the state is entered the delayed
-/// distance is the present one: v is 0, and no viscosity answers to what happened before.
+/// distance is the present one: v is 0, and no viscosity answers to what happened before. It stores
+/// the integral of K e + elasticity, within +- force_limit where there is one.
 struct LinkState {
   std::string name;
   double stiffness = 0.0;  ///< K [N/m], >= 0

@@ -103,6 +103,7 @@ StepReport WorldState::step() noexcept {
   report.refused_drives = outside.take_refused_drives();
   report.drive_jumps = outside.take_drive_jumps();
   report.non_finite_mats = moved.non_finite_mats;
+  report.has_energy = account.is_finite();
   report.overflowed_sets = sets.overflowed_count();
   report.forgotten_pairs = sets.forgotten_count();
   report.wants_room = sets.want_room(mats.force_columns().position);

@@ -42,6 +42,7 @@ struct StateTerm {
   double max_elongation = 0.0;     // 0 when it does not pull
   bool one_sided = false;          // one of the two above is finite
   bool limited = false;            // one of the tensions above is finite
+  bool limits_elastic = false;     // what it stores is the integral of the limited elastic tension
   LawTerm elasticity;
   LawTerm dissipation;
   const TransitionTerm* exits = nullptr;

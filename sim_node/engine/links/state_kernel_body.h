@@ -145,7 +145,7 @@ class StateMachineLoop {
     LawLoop<Lanes>::add(state.dissipation, law_arguments, tension);
 
     if (state.limited) limit(state, tension);
-    if (state.elasticity.is_potential && state.limited) {
+    if (state.limits_elastic) {
       limit(state, elastic);
     } else if (state.one_sided) {
       alignas(64) double elongation[Batch::kRows];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -34,6 +35,26 @@ bool all_pass(const std::vector<StateMachine>& state_machines,
 
 ProgramTerm ready(const Program& program, const double* variables = nullptr) {
   return {program.code.data(), program.code.size(), variables};
+}
+
+/// The integral of the tension of a spring within its limits [J].
+double energy_of_limited_spring(const StateTerm& term, double elongation) noexcept {
+  const double whole = term.stiffness * elongation;
+  const double limited = std::min(term.max_tension, std::max(term.min_tension, whole));
+  if (limited == whole) return 0.5 * whole * elongation;
+  return limited * (elongation - 0.5 * limited / term.stiffness);
+}
+
+/// From where the energy of a law is integrated that has a limit [m]: there it is within the limit.
+double begin_of_integral(const Law& law, const LawPoint& link) noexcept {
+  if (const Expression* expression = potential_expression(law))
+    return expression->distance_of_no_potential(link);
+  if (argument_of(law) != LawArgument::kDistance) return link.distance - link.elongation;
+  const double range = range_of(law);
+  const auto* balls = std::get_if<LennardJones>(&law);
+  const double of_no_force = std::pow(2.0, 1.0 / 6.0);  // in diameters
+  const bool is_endless = balls != nullptr && range == 0.0;
+  return std::copysign(is_endless ? of_no_force * balls->diameter : range, link.distance);
 }
 
 }  // namespace
@@ -127,6 +148,8 @@ void StateTable::Content::add_state(const LinkState& state,
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;
   }
+  term.limits_elastic =
+      state.force_limit < kUnlimited || (term.limited && term.elasticity.is_potential);
   term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
@@ -207,7 +230,7 @@ std::uint32_t StateTable::slot_count() const noexcept {
 double StateTable::stored_energy(StateIndex index, double distance, double rest_length,
                                  const EndMasses& mass) const noexcept {
   const StateTerm& term = content_->terms[index];
-  if (term.elasticity.is_potential && term.limited) {
+  if (term.limits_elastic) {
     return limited_energy(index, {distance, distance - rest_length, 0.0, mass.a, mass.b});
   }
   const double elongation =
@@ -217,17 +240,22 @@ double StateTable::stored_energy(StateIndex index, double distance, double rest_
   return linear + potential(state(index).elasticity, {distance, elongation, 0.0, mass.a, mass.b});
 }
 
-/// Energy of an expression whose tension has limits: the integral of the limited tension [J].
+/// Energy of a state whose tension has limits: the integral of the limited elastic tension [J].
 double StateTable::limited_energy(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
-  const Expression& law = *potential_expression(state(index).elasticity);
+  const Law& law = state(index).elasticity;
+  if (is_none(law) || (!stores_energy(law) && potential_expression(law) == nullptr))
+    return energy_of_limited_spring(term, link.elongation);
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double distance) {
     const LawPoint point{distance, distance - rest_length, 0.0, link.mass_a, link.mass_b};
-    const double whole = term.stiffness * point.elongation + scalar_tension(law, point, distance);
+    const double whole = term.stiffness * point.elongation + elastic_tension(law, point);
     return std::min(term.max_tension, std::max(term.min_tension, whole));
   };
-  return integral_over_distance(tension, law.distance_of_no_potential(link), link.distance);
+  const double begin = begin_of_integral(law, link);
+  const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
+  const double at_begin = is_of_distance ? potential(law, {begin}) : 0.0;
+  return at_begin + integral_over_distance(tension, begin, link.distance);
 }
 
 double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {

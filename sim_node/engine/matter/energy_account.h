@@ -1,6 +1,8 @@
 // sim_node/engine/matter/energy_account.h -- gathers the works of every step.
 #pragma once
 
+#include <cmath>
+
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/energy.h"
 #include "sim_node/engine/description/network.h"
@@ -52,6 +54,10 @@ class EnergyAccount {
   void add(const StepEnergy& step) noexcept;
 
   double dissipated() const noexcept { return dissipated_; }  ///< as entered [J]
+  /// False once an energy at the start or a work of a step was no finite number. O(1).
+  bool is_finite() const noexcept {
+    return std::isfinite(initial_ + stored_ + dissipated_ + port_work_ + switching_);
+  }
 
   /// @param since   works of the forces of the last step up to the present positions
   /// @param stored  what links, but for linear ones in 1 dimension, should store by the closed

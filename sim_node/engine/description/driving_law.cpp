@@ -1,0 +1,42 @@
+// sim_node/engine/description/driving_law.cpp
+#include "sim_node/engine/description/driving_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace cordis::engine {
+namespace {
+
+bool may_push_along(const Law& dissipation) noexcept {
+  if (std::holds_alternative<Expression>(dissipation)) return true;
+  if (const auto* power = std::get_if<Power>(&dissipation)) return power->coefficient < 0.0;
+  const auto* table = std::get_if<Table>(&dissipation);
+  if (table == nullptr) return false;
+  if (viscous_tension(dissipation, LawPoint{}) != 0.0) return true;
+  for (std::size_t i = 0; i < table->argument().size(); ++i) {
+    if (table->argument()[i] * table->value()[i] < 0.0) return true;
+  }
+  return false;
+}
+
+bool is_cut(const LinkState& state) noexcept {
+  if ((state.pulls && state.pushes) || std::isfinite(state.force_limit)) return false;
+  return !is_none(state.elasticity) && !std::holds_alternative<Power>(state.elasticity) &&
+         potential_expression(state.elasticity) == nullptr;
+}
+
+bool may_drive(const LinkState& state) noexcept {
+  const bool asks_for_speed =
+      !stores_energy(state.elasticity) && potential_expression(state.elasticity) == nullptr;
+  return asks_for_speed || may_push_along(state.dissipation) || is_cut(state);
+}
+
+}  // namespace
+
+bool may_drive(const StateMachine& state_machine) noexcept {
+  return std::any_of(state_machine.states.begin(), state_machine.states.end(),
+                     [](const LinkState& state) { return may_drive(state); });
+}
+
+}  // namespace cordis::engine
