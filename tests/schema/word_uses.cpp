@@ -54,9 +54,9 @@ bool is_name_of_a_state(const std::string& key) {
 /// A link gives values to parameters of its liaison by the names of their file.
 bool is_parameter_alone(const FileFacts& facts, const KeyPath& path, const VariantFacts& variant,
                         const std::string& key) {
-  static const KeyTables tables(CORDIS_SOURCE_DIR "/docs/scene_keys.md");
+  static const KeyTables kTables(CORDIS_SOURCE_DIR "/docs/scene_keys.md");
   return variant.keys.contains("liaison") && facts.parameter_names().contains(key) &&
-         tables.meaning(heading_of(path), key).empty();
+         kTables.meaning(heading_of(path), key).empty();
 }
 
 /// The section of a device_node takes the keys of a device file: they count as those.
