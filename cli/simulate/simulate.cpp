@@ -22,6 +22,8 @@
 #include "cli/table/sound_file.h"
 #include "sim_node/checks/settling.h"
 #include "sim_node/checks/start_state.h"
+#include "sim_node/engine/core/thread_team.h"
+#include "sim_node/run/thread_count.h"
 
 namespace cordis::cli {
 namespace {
@@ -138,6 +140,7 @@ class Recording {
         {"passed_bound", result.bound},
         {"driven", result.drives},
         {"settled", result.settled},
+        {"threads", result.threads},
         {"wall_s", result.wall_s},
         {"energy_j", energy.total()},
         {"energy_drift", energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0},
@@ -175,6 +178,10 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   if (!options.state_file.empty()) state.emplace(options.state_file);
   Recording recording(options, session);
   SimulateResult result;
+  result.threads = options.threads > 0 ? options.threads
+                                       : sim::fastest_thread_count(session.world().shared_network(),
+                                                                   sim::usable_core_count());
+  session.simulation().world().share_steps(std::make_shared<engine::ThreadTeam>(result.threads));
   result.warnings = session.warnings();
   result.settled = sim::settled_text(session.scene());
 

@@ -1,6 +1,7 @@
 // cli/simulate/simulate.h -- a session played offline, and the numbers that come of it.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct SimulateOptions : TableOptions {
   std::vector<std::string> overrides;  ///< words `name.key=value` for a launch file
   double duration_s = 0.0;             ///< 0: `duration_s` of the sim_node
   std::string summary_file;
-  std::string state_file;  ///< for the state at the end
+  std::string state_file;   ///< for the state at the end
+  std::size_t threads = 0;  ///< so many share a step; 0: as many as are fastest
 };
 
 /// What came of it.
@@ -34,6 +36,7 @@ struct SimulateResult {
   std::uint64_t row_count = 0;
   std::uint64_t event_count = 0;
   std::uint64_t lost_events = 0;
+  std::size_t threads = 1;  ///< threads that shared a step
   double wall_s = 0.0;      ///< wall time of the simulation alone
   double sound_peak = 0.0;  ///< peak of the sound file; 1 is full scale
 };

@@ -9,6 +9,7 @@
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
+#include "cli/number.h"
 #include "cli/run/stop_signals.h"
 #include "cli/simulate/simulate.h"
 #include "node/config/count_text.h"
@@ -20,6 +21,7 @@ namespace {
 std::string report_of(const SimulateResult& result) {
   std::string text = result.settled.empty() ? "" : "settled " + result.settled + "\n";
   text += fmt::format("simulated {:.6g} s in {:.3g} s", result.simulated_s, result.wall_s);
+  if (result.threads > 1) text += fmt::format(" by {} threads", result.threads);
   if (result.wall_s > 0.0)
     text += fmt::format(", {:.3g} times as fast as real time", result.simulated_s / result.wall_s);
   if (result.row_count > 0) text += "; " + config::count_text(result.row_count, "row");
@@ -31,6 +33,12 @@ std::string report_of(const SimulateResult& result) {
   }
   return text + fmt::format("\nstate hash {:016x} after {}\n", result.state_hash,
                             config::count_text(result.step_count, "step"));
+}
+
+/// @return 0 for `auto`
+std::size_t thread_count_of(const std::string& word) {
+  if (word.empty() || word == "auto") return 0;
+  return static_cast<std::size_t>(parse_whole_number("--threads", word, 1, 256));
 }
 
 int run(const SimulateOptions& options) {
@@ -62,6 +70,7 @@ void add_simulate_verb(CommandLine& line) {
   struct SimulateWords {
     SimulateOptions options;
     std::string duration;
+    std::string threads;
   };
   auto words = std::make_shared<SimulateWords>();
   SimulateOptions& options = words->options;
@@ -79,6 +88,9 @@ void add_simulate_verb(CommandLine& line) {
               "Write what came of it, as JSON; - for stdout");
   verb.option("--save-state", "FILE", options.state_file,
               "Write the state at the end, for 'start_state' of a scene");
+  verb.option("--threads", "N", words->threads,
+              "How many threads share a step: 1 to 256, or auto, which measures at the start "
+              "whether several are faster [auto]");
   verb.examples(
       "The devices of a launch file play with the drivers mock and script; the result is that of\n"
       "`cordis run` in lockstep, bit for bit. Columns are the time, the signals, the position and\n"
@@ -93,6 +105,7 @@ void add_simulate_verb(CommandLine& line) {
       "--summary -\n");
   verb.action([words] {
     SimulateOptions& asked = words->options;
+    asked.threads = thread_count_of(words->threads);
     if (!words->duration.empty()) asked.duration_s = seconds_of(parse_duration(words->duration));
     return run(asked);
   });

@@ -48,6 +48,15 @@ VectorWidth World::vector_width() const noexcept {
   return state_->width;
 }
 
+void World::share_steps(std::shared_ptr<ThreadTeam> team) noexcept {
+  CORDIS_ASSERT(team != nullptr);
+  state_->team = std::move(team);
+}
+
+std::size_t World::block_count() const noexcept {
+  return state_->blocks.count();
+}
+
 void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
   state_->outside.impose_position(mat, position);
 }

@@ -14,13 +14,14 @@
 
 namespace cordis::engine {
 
+class ThreadTeam;
 struct WorldState;
 
 /// A network in motion.
 ///
 /// A step has two phases [Luc90 III Calculability]: all forces from the present positions, then all
 /// positions from these forces, as NetworkDescription::integrator says. Results are the same bits
-/// on every run, optimisation level and vector width.
+/// on every run, optimisation level, vector width and number of threads.
 class World {
  public:
   /// @throws std::invalid_argument without a network, when its integrator does not take it (see
@@ -34,6 +35,12 @@ class World {
   const Network& network() const noexcept;
   const std::shared_ptr<const Network>& shared_network() const noexcept;
   VectorWidth vector_width() const noexcept;
+
+  /// From now on these threads share each step; at first the calling thread is alone. Not in real time.
+  /// Preconditions: there is a team, and it serves one world at a time.
+  void share_steps(std::shared_ptr<ThreadTeam> team) noexcept;
+  /// Into how many parts a team can take a step apart; 1: more threads gain nothing.
+  std::size_t block_count() const noexcept;
 
   /// Sets the position that a port mass takes at the beginning of the next step, before the forces
   /// are computed. Without a new one it stays where it is. A position that is not finite is ignored

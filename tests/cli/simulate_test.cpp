@@ -155,6 +155,39 @@ TEST_F(Simulate, WritesARowForEachStepWithUnitsInTheHeader) {
   }
 }
 
+/// 12,100 masses and 23,981 links, pulled at a corner.
+constexpr const char* kNet = R"(cordis: 1
+name: net
+space: 1
+step: {rate_hz: 4000, integrator: cordis}
+matter:
+  net: {kind: grid, rows: 110, columns: 110, mass_kg: 0.001, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0.01}
+  hand: {kind: fixed, at_m: 0.01}
+liaisons: {thread: {kind: spring_damper, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0.01}}
+links: [{liaison: thread, between: [hand, "net[0]"]}]
+)";
+
+TEST_F(Simulate, ComesToTheSameStateByAnyNumberOfThreads) {
+  const std::string scene = put("net.yaml", kNet);
+  ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", "1"}), kSuccess) << error_;
+  const std::string state = out_.substr(out_.find("state hash"));
+  EXPECT_THAT(out_, testing::Not(HasSubstr("threads")));
+  for (const std::string threads : {"2", "3", "auto"}) {
+    ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", threads}), kSuccess) << error_;
+    EXPECT_THAT(out_, HasSubstr(state)) << threads;
+    if (threads == "auto") continue;
+    EXPECT_THAT(out_, HasSubstr("by " + threads + " threads"));
+  }
+}
+
+TEST_F(Simulate, RefusesNumbersOfThreadsThatAreNone) {
+  const std::string scene = put("fall.yaml", kFalling);
+  for (const char* threads : {"0", "257", "-1", "many"}) {
+    EXPECT_EQ(run({scene, "--duration", "0.01s", "--threads", threads}), kBadInput) << threads;
+    EXPECT_THAT(error_, HasSubstr("--threads")) << threads;
+  }
+}
+
 TEST_F(Simulate, SavesTheStateThatASceneGoesOnFrom) {
   const std::string scene = put("fall.yaml", kFalling);
   ASSERT_EQ(run({scene, "--duration", "0.25s", "--save-state", path("stone.state")}), kSuccess)

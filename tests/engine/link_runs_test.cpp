@@ -15,12 +15,18 @@
 namespace cordis::test {
 namespace {
 
-using engine::arrange_links;
 using engine::layout_of;
 using engine::LinkArrangement;
 using engine::LinkRun;
 
 constexpr std::uint32_t kEmpty = LinkArrangement::kEmpty;
+
+/// In runs where they may be, with room behind them.
+LinkArrangement arranged(const std::vector<Link>& links) {
+  LinkArrangement rows;
+  engine::arrange_links(links, 0, true, 1000000, rows);
+  return rows;
+}
 
 std::vector<Link> chain(std::uint32_t first, std::uint32_t link_count, std::uint32_t offset = 1) {
   std::vector<Link> links;
@@ -188,7 +194,7 @@ TEST(LinkArrangement, HasEachLinkInOneRowAndInItsOrder) {
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     RandomRuns random(seed);
     const std::vector<Link> links = random.links(97);
-    const LinkArrangement rows = arrange_links(links, true);
+    const LinkArrangement rows = arranged(links);
 
     std::uint32_t next = 0;
     std::size_t row = 0;
@@ -213,12 +219,12 @@ TEST(LinkArrangement, HasEachLinkInOneRowAndInItsOrder) {
 }
 
 TEST(LinkArrangement, MakesOneRunOfAChainAndOneOfAllRowsOfAGrid) {
-  EXPECT_EQ(arrange_links(chain(0, 70), true).runs.size(), 1U);
-  EXPECT_EQ(arrange_links(chain(3, 70, 30), true).runs.size(), 1U);
+  EXPECT_EQ(arranged(chain(0, 70)).runs.size(), 1U);
+  EXPECT_EQ(arranged(chain(3, 70, 30)).runs.size(), 1U);
 
   std::vector<Link> rows_of_grid = chain(0, 19);
   for (const Link& link : chain(20, 19)) rows_of_grid.push_back(link);
-  const LinkArrangement rows = arrange_links(rows_of_grid, true);
+  const LinkArrangement rows = arranged(rows_of_grid);
 
   ASSERT_EQ(rows.runs.size(), 1U);
   EXPECT_EQ(rows.link_of_row[19], kEmpty);
@@ -226,11 +232,11 @@ TEST(LinkArrangement, MakesOneRunOfAChainAndOneOfAllRowsOfAGrid) {
 }
 
 TEST(LinkArrangement, GathersWhatIsTooShortOrDescends) {
-  EXPECT_TRUE(arrange_links(chain(0, 7), true).runs[0].is_gathered);
-  EXPECT_FALSE(arrange_links(chain(0, 8), true).runs[0].is_gathered);
+  EXPECT_TRUE(arranged(chain(0, 7)).runs[0].is_gathered);
+  EXPECT_FALSE(arranged(chain(0, 8)).runs[0].is_gathered);
   std::vector<Link> descending = chain(0, 30);
   std::reverse(descending.begin(), descending.end());
-  const LinkArrangement rows = arrange_links(descending, true);
+  const LinkArrangement rows = arranged(descending);
   ASSERT_EQ(rows.runs.size(), 1U);
   EXPECT_TRUE(rows.runs[0].is_gathered);
 }

@@ -237,14 +237,15 @@ std::vector<double> positions_with_skin(const NetworkDescription& scene, double 
   const auto width = engine::best_vector_width();
   const engine::StateTable table(scene.state_machines, scene.step);
   engine::EventLog log(table, 16);
-  engine::MatArray mats(scene);
+  engine::ThreadTeam alone(1);
+  engine::MatArray mats(scene, {}, engine::MatBlocks(scene));
   engine::SetPairs set(scene, 0, table, engine::pair_kernel(width));
   if (skin >= 0.0) set.neighbours().hold_skin(skin);
   for (std::uint64_t n = 0; n < 2000; ++n) {
-    mats.clear_forces();
+    mats.clear_forces(alone);
     static_cast<void>(set.add_forces({table, engine::state_kernel(width), log, n, false, true},
                                      mats.force_columns()));
-    static_cast<void>(mats.advance(engine::step_kernel(width)));
+    static_cast<void>(mats.advance(engine::step_kernel(width), alone));
   }
   std::vector<double> positions;
   for (std::uint32_t i = 0; i < mats.count(); ++i) {

@@ -47,7 +47,7 @@ Moved CentralDifference::step(WorldState& world) noexcept {
 
   energy.port_work += world.outside.kick(mats);
   if (world.freezing) energy.dissipated += world.freezing->choose_movers(world, false);
-  const AdvanceReport advance = mats.advance(world.kernel);
+  const AdvanceReport advance = mats.advance(world.kernel, *world.team);
   energy.port_work += world.outside.release(mats);
   energy.port_work += world.outside.drive_to(world.step_count + 1, mats);
 

@@ -15,7 +15,7 @@ void ImplicitEuler::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
   world.outside.start(mats);
-  mats.clear_forces();
+  mats.clear_forces(*world.team);
   mats.set_forces_are_present(true);
   mats.find_displacements(before_);
   world.state_links.start();

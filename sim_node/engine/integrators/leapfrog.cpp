@@ -23,7 +23,7 @@ void Leapfrog::start(WorldState& world) noexcept {
   for (std::uint32_t i = 0; i < mats.count(); ++i) column(extrapolated_, i) = mats.delayed(i);
   world.outside.start(mats);
   if (damping_) {
-    mats.clear_forces();
+    mats.clear_forces(*world.team);
   } else {
     world.outside.kick(mats);  // what drives push with is known from the start
     mats.start();
@@ -51,7 +51,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   } else {
     memory_[2 * velocity_.size()] = 0.0;
     if (world.freezing) energy.dissipated += stop_what_rests(world);
-    const AdvanceReport advance = mats.extrapolate(world.kernel, extrapolated_);
+    const AdvanceReport advance = mats.extrapolate(world.kernel, extrapolated_, *world.team);
     moved.non_finite_mats = advance.non_finite_mats;
     take_half(0.5 * advance.medium_work, energy);
   }

@@ -72,7 +72,7 @@ void ModalIntegrator::start(WorldState& world) noexcept {
       mats.set_motion(i, start_[i], start_[i] - moved);
     }
   }
-  mats.clear_forces();
+  mats.clear_forces(*world.team);
   world.start_one_period_ago();
   const double stored = world.stored_energy();
   world.account.open(0.0, stored);

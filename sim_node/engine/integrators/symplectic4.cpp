@@ -81,7 +81,7 @@ Moved Symplectic4::step(WorldState& world) noexcept {
 }
 
 void Symplectic4::find_forces(WorldState& world) noexcept {
-  world.mats.clear_forces();
+  world.mats.clear_forces(*world.team);
   add_forces(world);
 }
 
@@ -89,8 +89,8 @@ void Symplectic4::find_forces(WorldState& world) noexcept {
 void Symplectic4::add_forces(WorldState& world) noexcept {
   ForceColumns at_rest = world.mats.force_columns();
   at_rest.delayed = at_rest.position;
-  world.links.add_forces_at_full_step(world.kernel, at_rest);
-  world.vector_springs.add_forces_at_full_step(world.kernel, at_rest);
+  world.links.add_forces_at_full_step(world.kernel, at_rest, *world.team);
+  world.vector_springs.add_forces_at_full_step(world.kernel, at_rest, *world.team);
   world.state_links.add_forces_before_start(world.state_machines, world.table, at_rest);
   world.bends.add_forces(at_rest);
   PairStep pairs = world.pair_step(true);

@@ -31,15 +31,16 @@ VectorWidth require(VectorWidth width) {
 }
 
 /// Linear links, less the ones that `modal` takes as modes.
-SpringDamperArray stepped_links(const NetworkDescription& network, const MatLayout& layout) {
+SpringDamperArray stepped_links(const NetworkDescription& network, const MatLayout& layout,
+                                const MatBlocks& blocks) {
   constexpr auto kAlong = SpringDamperArray::Kind::kAlong;
-  if (network.integrator != IntegratorKind::kModal) return {network, kAlong, layout};
+  if (network.integrator != IntegratorKind::kModal) return {network, kAlong, layout, blocks};
   NetworkDescription stepped = network;
   std::erase_if(stepped.links, [&network](const Link& link) {
     return network.mats[link.mat_a].kind != MatKind::kPort &&
            network.mats[link.mat_b].kind != MatKind::kPort;
   });
-  return {stepped, kAlong, layout};
+  return {stepped, kAlong, layout, blocks};
 }
 
 /// The state machines of a snapshot: those of the network unless one has been replaced.
@@ -66,12 +67,14 @@ const std::vector<StateMachine>& state_machines_of(const Snapshot& snapshot,
 WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWidth width_of_step)
     : network(require(std::move(network_of_world))),
       width(require(width_of_step)),
+      team(std::make_shared<ThreadTeam>(1)),
       kernel(step_kernel(width)),
       state_machines(state_kernel(width)),
-      mats(description(), layout_of(description())),
+      blocks(description()),
+      mats(description(), layout_of(description()), blocks),
       positions(mats.position()),
-      links(stepped_links(description(), mats.layout())),
-      vector_springs(description(), SpringDamperArray::Kind::kVectorSpring, mats.layout()),
+      links(stepped_links(description(), mats.layout(), blocks)),
+      vector_springs(description(), SpringDamperArray::Kind::kVectorSpring, mats.layout(), blocks),
       table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),
@@ -112,8 +115,8 @@ StepReport WorldState::step() noexcept {
 }
 
 void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
-  links.add_forces(kernel, columns);
-  vector_springs.add_forces(kernel, columns);
+  links.add_forces(kernel, columns, *team);
+  vector_springs.add_forces(kernel, columns, *team);
   state_links.add_forces_before_start(state_machines, table, columns);
   maxwell_links.add_held_forces(state_machines, columns);
   bends.add_forces(columns);
@@ -126,7 +129,7 @@ void WorldState::start_one_period_ago() noexcept {
   maxwell_links.go_back(mats);
   add_frozen_forces(one_period_ago);
   outside.start(mats);
-  mats.clear_forces();
+  mats.clear_forces(*team);
   links.start();
   vector_springs.start();
   bends.forget_viscous_forces();
@@ -156,7 +159,7 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
 
 StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
   if (!freezing) {
-    mats.clear_forces();
+    mats.clear_forces(*team);
     return {};
   }
   const StepEnergy energy = sets.take_positions(columns);
@@ -177,8 +180,8 @@ StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
 
 void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
-  energy += links.add_forces(kernel, columns);
-  energy += vector_springs.add_forces(kernel, columns);
+  energy += links.add_forces(kernel, columns, *team);
+  energy += vector_springs.add_forces(kernel, columns, *team);
   if (!state_links.empty()) {
     energy += state_links.add_forces(state_machines, table, columns, step_count, log);
   }
@@ -196,8 +199,8 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
   sets.start();
   const StepEnergy of_last_sets = begin_forces(extrapolated);
 
-  StepEnergy of_links = links.add_forces_at_full_step(kernel, extrapolated);
-  of_links += vector_springs.add_forces_at_full_step(kernel, extrapolated);
+  StepEnergy of_links = links.add_forces_at_full_step(kernel, extrapolated, *team);
+  of_links += vector_springs.add_forces_at_full_step(kernel, extrapolated, *team);
   of_links.dissipated *= 0.5;
   // Half the work of the viscous forces of this step is returned: those of the last are forgotten.
   if (!state_links.empty()) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/integrators/freezing.h"
 #include "sim_node/engine/integrators/integrator.h"
@@ -19,6 +20,7 @@
 #include "sim_node/engine/links/state_links.h"
 #include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_blocks.h"
 #include "sim_node/engine/matter/port_inputs.h"
 #include "sim_node/engine/matter/step_kernel.h"
 #include "sim_node/engine/pairs/set_liaisons.h"
@@ -105,8 +107,10 @@ struct WorldState {
 
   std::shared_ptr<const Network> network;
   VectorWidth width;
+  std::shared_ptr<ThreadTeam> team;
   const StepKernel& kernel;
   const StateKernel& state_machines;
+  MatBlocks blocks;
   MatArray mats;
   Columns positions;  // of mats, as of the last update_columns()
   SpringDamperArray links;

@@ -1,6 +1,8 @@
 // sim_node/engine/links/link_runs.cpp
 #include "sim_node/engine/links/link_runs.h"
 
+#include <algorithm>
+
 #include "sim_node/engine/matter/step_kernel.h"
 
 namespace cordis::engine {
@@ -18,6 +20,15 @@ std::size_t run_length(std::span<const Link> links, std::size_t first) noexcept 
     ++last;
   }
   return last + 1 - first;
+}
+
+/// How many of the links of a run, whole batches of rows, add to the forces of no MAT from last_mat on.
+std::size_t fitting_length(std::span<const Link> run, std::size_t last_mat) noexcept {
+  const std::size_t higher = std::max(run[0].mat_a, run[0].mat_b);
+  const std::size_t rows = (last_mat - higher) / kLinkBatch * kLinkBatch;
+  std::size_t length = run.size();
+  while (length > 0 && run[length - 1].mat_a - run[0].mat_a >= rows) --length;
+  return length;
 }
 
 /// Fills the rows of an arrangement, one link after the other.
@@ -39,9 +50,10 @@ class Arranger {
   }
   void begin(const Link& link, bool is_gathered) {
     rows_.runs.push_back({rows_.link_of_row.size(), 0, link.mat_a, link.mat_b, is_gathered});
+    is_gathering_ = is_gathered;
   }
   void gather(std::uint32_t index, const Link& link) {
-    if (rows_.runs.empty() || !rows_.runs.back().is_gathered) {
+    if (!is_gathering_) {
       begin(link, true);
       gathered_ = 0;
     }
@@ -50,6 +62,7 @@ class Arranger {
 
  private:
   LinkArrangement& rows_;
+  bool is_gathering_ = false;
   std::size_t gathered_ = 0;  // links since the last run
 };
 
@@ -65,16 +78,16 @@ std::size_t linear_links_in_runs(std::span<const Link> links) noexcept {
 
 }  // namespace
 
-LinkArrangement arrange_links(std::span<const Link> links, bool with_runs) {
-  LinkArrangement rows;
-  rows.link_of_row.reserve(padded(links.size(), kLinkBatch));
+void arrange_links(std::span<const Link> links, std::uint32_t first_link, bool with_runs,
+                   std::size_t last_mat, LinkArrangement& rows) {
   Arranger arranger(rows);
   for (std::size_t l = 0; l < links.size();) {
     const std::size_t length = with_runs ? run_length(links, l) : 1;
-    const bool is_run = length >= LinkArrangement::kShortestRun;
+    const std::size_t fitting = fitting_length(links.subspan(l, length), last_mat);
+    const bool is_run = fitting >= LinkArrangement::kShortestRun;
     if (is_run) arranger.begin(links[l], false);
-    for (const std::size_t first = l; l < first + length; ++l) {
-      const auto index = static_cast<std::uint32_t>(l);
+    for (const std::size_t first = l; l < first + (is_run ? fitting : length); ++l) {
+      const auto index = static_cast<std::uint32_t>(first_link + l);
       if (is_run) {
         arranger.put(index, links[l].mat_a - links[first].mat_a);
       } else {
@@ -82,7 +95,6 @@ LinkArrangement arrange_links(std::span<const Link> links, bool with_runs) {
       }
     }
   }
-  return rows;
 }
 
 MatLayout layout_of(const NetworkDescription& description) {

@@ -37,8 +37,13 @@ struct LinkArrangement {
   std::vector<LinkRun> runs;
 };
 
-/// @param links  in link order  @param with_runs  else all are gathered
-LinkArrangement arrange_links(std::span<const Link> links, bool with_runs);
+/// Appends rows to an arrangement, in runs of their own.
+/// @param links  in link order  @param first_link  the index of the first of them
+/// @param with_runs  else all are gathered
+/// @param last_mat  one past the MATs whose forces the rows may add to, empty ones included: links of a run
+/// that would go beyond are gathered
+void arrange_links(std::span<const Link> links, std::uint32_t first_link, bool with_runs,
+                   std::size_t last_mat, LinkArrangement& rows);
 
 /// By axis where nothing but linear links reads the arrays of the MATs, and most links are in runs: a
 /// world of `cordis` without states, sets, Maxwell elements and freezing. By MAT else. It depends on

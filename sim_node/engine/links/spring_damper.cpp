@@ -20,47 +20,75 @@ std::size_t axes_of(Kind kind, const NetworkDescription& description) {
   return kind == Kind::kVectorSpring ? static_cast<std::size_t>(description.dimension) : 1;
 }
 
-std::vector<Link> links_of(Kind kind, const NetworkDescription& description) {
+/// By groups of the blocks, within one in link order.
+std::vector<Link> links_of(Kind kind, const NetworkDescription& description,
+                           const MatBlocks& blocks) {
   std::vector<Link> links;
   for (const Link& link : description.links) {
     if (!is_of(kind, description, link)) continue;
     links.insert(links.end(), axes_of(kind, description), link);
   }
+  if (blocks.count() == 1) return links;
+  std::stable_sort(links.begin(), links.end(), [&blocks](const Link& first, const Link& second) {
+    return blocks.group_of(first) < blocks.group_of(second);
+  });
   return links;
 }
 
 }  // namespace
 
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind,
-                                     const MatLayout& layout)
+                                     const MatLayout& layout, const MatBlocks& blocks)
     : layout_(layout),
+      blocks_(blocks),
+      works_(blocks.group_count()),
       dimension_(description.dimension),
       is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
       active_(0, kLinkBatch) {
-  const std::vector<Link> links = links_of(kind, description);
-  const bool by_axis = layout.is_by_axis();
-  LinkArrangement arrangement = arrange_links(links, by_axis && kind == Kind::kAlong);
-  const std::size_t row_count = arrangement.link_of_row.size();
+  arrange(links_of(kind, description, blocks), layout.is_by_axis() && kind == Kind::kAlong,
+          axes_of(kind, description), description.step);
+}
+
+/// @param links  by groups  @param axes  so many rows in turn are of one link
+void SpringDamperArray::arrange(const std::vector<Link>& links, bool with_runs, std::size_t axes,
+                                double step) {
+  LinkArrangement rows;
+  rows.link_of_row.reserve(padded(links.size(), kLinkBatch));
+  std::size_t l = 0;
+  for (std::size_t group = 0; group < blocks_.group_count(); ++group) {
+    groups_.push_back({rows.link_of_row.size(), rows.runs.size()});
+    const std::size_t first = l;
+    while (l < links.size() && blocks_.group_of(links[l]) == group) ++l;
+    const bool may_overhang =
+        group == blocks_.group_of_others();  // behind the last MAT there is room
+    const std::size_t last_mat =
+        blocks_.mats_of_group(group).last + (may_overhang ? kLinkBatch : 0);
+    arrange_links(std::span(links).subspan(first, l - first), static_cast<std::uint32_t>(first),
+                  with_runs, last_mat, rows);
+  }
+  const std::size_t row_count = rows.link_of_row.size();
+  groups_.push_back({row_count, rows.runs.size()});
+
   for (auto* columns : {&column_a_, &column_b_}) columns->assign(row_count, 0U);
   for (auto* values : {&stiffness_, &viscosity_over_dt_, &rest_length_, &viscous_factor_}) {
     values->assign(row_count, 0.0);
   }
   if (!is_1d_) elastic_factor_.assign(row_count, 0.0);
-
-  const std::size_t axes = axes_of(kind, description);
+  std::size_t group = 0;
   for (std::size_t row = 0; row < row_count; ++row) {
-    const std::uint32_t l = arrangement.link_of_row[row];
-    if (l == LinkArrangement::kEmpty) {
-      pad_row(row, description.mats.size());
+    while (groups_[group + 1].first_row <= row) ++group;
+    const std::uint32_t link = rows.link_of_row[row];
+    if (link == LinkArrangement::kEmpty) {
+      pad_row(row, blocks_.mats_of_group(group));
     } else {
-      fill_row(row, links[l], static_cast<std::uint32_t>(l % axes), description.step);
+      fill_row(row, links[link], static_cast<std::uint32_t>(link % axes), step);
     }
   }
   active_ = ActiveLinks(row_count, kLinkBatch);
-  if (!by_axis) return;
-  find_equal_parameters(arrangement);
-  runs_ = std::move(arrangement.runs);
-  used_rows_ = std::move(arrangement.used_rows);
+  if (!layout_.is_by_axis()) return;
+  find_equal_parameters(rows);
+  runs_ = std::move(rows.runs);
+  used_rows_ = std::move(rows.used_rows);
 }
 
 void SpringDamperArray::fill_row(std::size_t row, const Link& link, std::uint32_t axis,
@@ -74,9 +102,9 @@ void SpringDamperArray::fill_row(std::size_t row, const Link& link, std::uint32_
 }
 
 /// A row of padding joins a MAT to itself without stiffness or viscosity: its force is 0.
-void SpringDamperArray::pad_row(std::size_t row, std::size_t mat_count) noexcept {
-  column_a_[row] = column_b_[row] =
-      static_cast<std::uint32_t>(layout_.offset(mat_of_padding(row, mat_count)));
+void SpringDamperArray::pad_row(std::size_t row, const MatBlocks::Mats& mats) noexcept {
+  column_a_[row] = column_b_[row] = static_cast<std::uint32_t>(
+      layout_.offset(mats.first + mat_of_padding(row, mats.last - mats.first)));
 }
 
 void SpringDamperArray::find_equal_parameters(const LinkArrangement& arrangement) {
@@ -133,17 +161,57 @@ RunRows SpringDamperArray::rows(std::size_t run) noexcept {
   return rows;
 }
 
-StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces,
-                                  const ForceColumns& columns) noexcept {
+/// Calls add_group(group, work) for each group, those at once of which no two add to the forces of one MAT.
+template <class AddGroup>
+StepEnergy SpringDamperArray::add_groups(ThreadTeam& team, const AddGroup& add_group) noexcept {
+  const auto add = [&](std::size_t group) noexcept {
+    works_[group] = {};
+    add_group(group, works_[group]);
+  };
+  const std::size_t block_count = blocks_.count();
+  const auto share_groups = [&](std::size_t member) noexcept {
+    const ThreadTeam::Share blocks = team.share(member, block_count);
+    for (std::size_t block = blocks.first; block < blocks.last; ++block) add(block);
+    for (const std::size_t parity : {0U, 1U}) {
+      team.meet();
+      for (std::size_t block = blocks.first; block < blocks.last; ++block) {
+        if (block % 2 == parity && block + 1 < block_count) add(blocks_.group_between(block));
+      }
+    }
+  };
+  if (block_count > 1) team.run(share_groups);
+  add(blocks_.group_of_others());
+
+  LinkWork sum;
+  for (const LinkWork& work : works_) {
+    for (std::size_t place = 0; place < kLinkBatch; ++place) {
+      sum.elastic[place] += work.elastic[place];
+      sum.dissipated[place] += work.dissipated[place];
+    }
+  }
+  return half_of(sum);
+}
+
+StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces, const ForceColumns& columns,
+                                  ThreadTeam& team) noexcept {
   if (column_a_.empty()) return {};
   CORDIS_ASSERT(!layout_.is_by_axis());
+  if (blocks_.count() > 1) {
+    return add_groups(team, [&](std::size_t group, LinkWork& work) noexcept {
+      const std::size_t first = groups_[group].first_row;
+      const ActiveLinks::Run run{first, groups_[group + 1].first_row - first};
+      if (run.count > 0) add_link_forces(rows(run), columns, work);
+    });
+  }
   LinkWork work;
   for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
   return half_of(work);
 }
 
 StepEnergy SpringDamperArray::add_by_axis(const StepKernel& kernel,
-                                          const ForceColumns& rows_of_mats) noexcept {
+                                          const ForceColumns& rows_of_mats,
+                                          ThreadTeam& team) noexcept {
+  if (column_a_.empty()) return {};
   const AddLinkForces gathered_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces gathered_nd =
       viscous_ ? kernel.gathered_spring_dampers_by_axis : kernel.gathered_springs_by_axis;
@@ -152,32 +220,33 @@ StepEnergy SpringDamperArray::add_by_axis(const StepKernel& kernel,
   const AddRunForces chained = viscous_ ? loops.chained_spring_dampers : loops.chained_springs;
   const AddRunForces along = viscous_ ? loops.spring_dampers : loops.springs;
 
-  LinkWork work;
-  for (std::size_t i = 0; i < runs_.size(); ++i) {
-    const LinkRun& run = runs_[i];
-    if (run.is_gathered) {
-      gathered(rows(ActiveLinks::Run{run.first_row, run.row_count}), rows_of_mats, work);
-    } else {
-      (run.first_b == run.first_a + 1 ? chained : along)(rows(i), rows_of_mats, work);
+  return add_groups(team, [&](std::size_t group, LinkWork& work) noexcept {
+    for (std::size_t i = groups_[group].first_run; i < groups_[group + 1].first_run; ++i) {
+      const LinkRun& run = runs_[i];
+      if (run.is_gathered) {
+        gathered(rows(ActiveLinks::Run{run.first_row, run.row_count}), rows_of_mats, work);
+      } else {
+        (run.first_b == run.first_a + 1 ? chained : along)(rows(i), rows_of_mats, work);
+      }
     }
-  }
-  return half_of(work);
+  });
 }
 
-StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel,
-                                         const ForceColumns& columns) noexcept {
-  if (layout_.is_by_axis()) return add_by_axis(kernel, columns);
+StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel, const ForceColumns& columns,
+                                         ThreadTeam& team) noexcept {
+  if (layout_.is_by_axis()) return add_by_axis(kernel, columns, team);
   const AddLinkForces forces_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces forces_nd = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
-  return add(is_1d_ ? forces_1d : forces_nd, columns);
+  return add(is_1d_ ? forces_1d : forces_nd, columns, team);
 }
 
 StepEnergy SpringDamperArray::add_forces_at_full_step(const StepKernel& kernel,
-                                                      const ForceColumns& columns) noexcept {
+                                                      const ForceColumns& columns,
+                                                      ThreadTeam& team) noexcept {
   const AddLinkForces forces_1d = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
   const AddLinkForces forces_nd =
       viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
-  return {0.0, 2.0 * add(is_1d_ ? forces_1d : forces_nd, columns).dissipated, 0.0, 0.0};
+  return {0.0, 2.0 * add(is_1d_ ? forces_1d : forces_nd, columns, team).dissipated, 0.0, 0.0};
 }
 
 void SpringDamperArray::mark_neighbours(const WakePropagation& pass,

@@ -6,10 +6,12 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/link_runs.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
+#include "sim_node/engine/matter/mat_blocks.h"
 #include "sim_node/engine/matter/mat_roles.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
@@ -26,22 +28,25 @@ class SpringDamperArray {
     kAlong,        ///< all links in 1 dimension, those that are not isotropic in 2 and 3
     kVectorSpring  ///< the others
   };
-  SpringDamperArray(const NetworkDescription& description, Kind kind, const MatLayout& layout);
+  SpringDamperArray(const NetworkDescription& description, Kind kind, const MatLayout& layout,
+                    const MatBlocks& blocks);
 
-  /// Adds the force of every link to its two MATs, in link order. Where the MATs are stored by axis, the
+  /// Adds the force of every link to its two MATs: group by group of the MatBlocks, which the members of the
+  /// team share, and within a group in link order. Where the MATs are stored by axis, the
   /// links of a run are added without looking up their ends, with the same bits.
   /// @return the work [J] that went into the links with the forces of the last call, from then to
   ///         now, and with these, from the last call to now; half of each, as a force f(n) does in
   ///         this scheme the work f(n) . (x(n+1) - x(n-1)) / 2. In line without that of the
   ///         springs, which is the change of K e(n) e(n-1) / 2.
   /// Real time: O(links), no allocation.
-  StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns) noexcept;
+  StepEnergy add_forces(const StepKernel& kernel, const ForceColumns& columns,
+                        ThreadTeam& team) noexcept;
 
   /// Adds the forces for an account at full steps: only the energy [J] that the viscous forces
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
   /// Precondition: the arrays are stored by MAT.
-  StepEnergy add_forces_at_full_step(const StepKernel& kernel,
-                                     const ForceColumns& columns) noexcept;
+  StepEnergy add_forces_at_full_step(const StepKernel& kernel, const ForceColumns& columns,
+                                     ThreadTeam& team) noexcept;
 
   /// Passes on along each link.
   void mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept;
@@ -71,15 +76,29 @@ class SpringDamperArray {
  private:
   static constexpr std::size_t kNoneEqual = ~std::size_t{0};
 
+  /// Where the rows and runs of a group begin.
+  struct Group {
+    std::size_t first_row = 0;
+    std::size_t first_run = 0;
+  };
+
+  void arrange(const std::vector<Link>& links, bool with_runs, std::size_t axes, double step);
   void fill_row(std::size_t row, const Link& link, std::uint32_t axis, double step) noexcept;
-  void pad_row(std::size_t row, std::size_t mat_count) noexcept;
+  void pad_row(std::size_t row, const MatBlocks::Mats& mats) noexcept;
   void find_equal_parameters(const LinkArrangement& arrangement);
   LinkRows rows(const ActiveLinks::Run& run) noexcept;
   RunRows rows(std::size_t run) noexcept;
-  StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns) noexcept;
-  StepEnergy add_by_axis(const StepKernel& kernel, const ForceColumns& rows) noexcept;
+  StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns,
+                 ThreadTeam& team) noexcept;
+  StepEnergy add_by_axis(const StepKernel& kernel, const ForceColumns& rows,
+                         ThreadTeam& team) noexcept;
+  template <class AddGroup>
+  StepEnergy add_groups(ThreadTeam& team, const AddGroup& add_group) noexcept;
 
   MatLayout layout_;
+  MatBlocks blocks_;
+  std::vector<Group> groups_;      // and one more, which ends the last
+  AlignedVector<LinkWork> works_;  // of each group in this step
   int dimension_;
   bool is_1d_;                               // 1 dimension, or vector springs
   bool viscous_ = false;                     // a link has viscosity

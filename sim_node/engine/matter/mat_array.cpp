@@ -7,8 +7,10 @@
 
 namespace cordis::engine {
 
-MatArray::MatArray(const NetworkDescription& description, const MatLayout& layout)
+MatArray::MatArray(const NetworkDescription& description, const MatLayout& layout,
+                   const MatBlocks& blocks)
     : layout_(layout),
+      blocks_(blocks),
       dimension_(static_cast<std::size_t>(description.dimension)),
       position_(layout.value_count(description.mats.size()), 0.0),
       delayed_(position_.size(), 0.0),
@@ -40,7 +42,9 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
       own_viscosity_over_dt_.resize(count(), medium_viscosity_over_dt_);
       own_viscosity_over_dt_[i] = mat.medium_viscosity / dt;
     }
-    if (masses.empty() || masses.back().last != i) masses.push_back({i, i});
+    const std::size_t block = blocks.block_of(static_cast<std::uint32_t>(i));
+    if (masses.empty() || masses.back().last != i || blocks.first(block) == i)
+      masses.push_back({i, i});
     masses.back().last = i + 1;
     if (!mat.weightless || description.gravity.isZero(0.0)) continue;
     weightless_.resize(count(), 0);
@@ -56,6 +60,7 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
   masses_.shrink_to_fit();
   moving_.reserve(description.freeze_tolerance > 0.0 ? count() : masses_.size());
   moving_ = masses_;
+  advanced_.resize(moving_.capacity());
 }
 
 void MatArray::start() noexcept {
@@ -69,7 +74,7 @@ void MatArray::start() noexcept {
       if (!moved_.empty()) set(moved_, i, before - 0.5 * pushed);
     }
   }
-  clear_forces();
+  std::fill(force_.begin(), force_.end(), 0.0);
 }
 
 Vec3 MatArray::velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept {
@@ -88,9 +93,25 @@ Vec3 MatArray::next_velocity_increment(std::uint32_t mat,
   return pushed - (1.0 - retention) * moved(mat);
 }
 
-void MatArray::clear_forces() noexcept {
-  const std::size_t used = layout_.is_by_axis() ? layout_.offset(0, dimension_) : force_.size();
-  std::fill_n(force_.begin(), used, 0.0);
+void MatArray::clear_forces(ThreadTeam& team) noexcept {
+  const auto clear = [&](std::size_t first, std::size_t last) noexcept {
+    if (!layout_.is_by_axis()) {
+      std::fill(force_.data() + 4 * first, force_.data() + 4 * last, 0.0);
+      return;
+    }
+    for (std::size_t axis = 0; axis < dimension_; ++axis) {
+      std::fill(force_.data() + layout_.offset(first, axis),
+                force_.data() + layout_.offset(last, axis), 0.0);
+    }
+  };
+  if (blocks_.count() == 1) {
+    clear(0, count());
+    return;
+  }
+  team.run([&](std::size_t member) noexcept {
+    const ThreadTeam::Share share = team.share(member, blocks_.count());
+    clear(blocks_.first(share.first), blocks_.first(share.last));
+  });
 }
 
 void MatArray::update_columns() noexcept {
@@ -131,13 +152,13 @@ void MatArray::halt(std::uint32_t mat) noexcept {
   if (!moved_.empty()) set(moved_, mat, Vec3::Zero());
 }
 
-AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
+AdvanceReport MatArray::advance(const StepKernel& kernel, ThreadTeam& team) noexcept {
   const Advance advance_by_axis =
       in_medium_ ? kernel.advance_by_axis_in_medium : kernel.advance_by_axis;
   const Advance advance_by_mat = in_medium_ ? kernel.advance_in_medium : kernel.advance;
   bool all_finite = true;
   AdvanceReport report = advance_rows(layout_.is_by_axis() ? advance_by_axis : advance_by_mat,
-                                      nullptr, 0.5, all_finite);
+                                      nullptr, 0.5, team, all_finite);
   // What does not move has one place in both.
   position_.swap(delayed_);
   for (const std::uint32_t port : ports_) {
@@ -149,12 +170,12 @@ AdvanceReport MatArray::advance(const StepKernel& kernel) noexcept {
   return report;
 }
 
-AdvanceReport MatArray::extrapolate(const StepKernel& kernel,
-                                    AlignedVector<double>& extrapolated) noexcept {
+AdvanceReport MatArray::extrapolate(const StepKernel& kernel, AlignedVector<double>& extrapolated,
+                                    ThreadTeam& team) noexcept {
   bool all_finite = true;
   AdvanceReport report =
       advance_rows(in_medium_ ? kernel.extrapolate_in_medium : kernel.extrapolate,
-                   extrapolated.data(), 1.0, all_finite);
+                   extrapolated.data(), 1.0, team, all_finite);
   if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
 }
@@ -183,17 +204,36 @@ void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexc
 
 /// @param share  of moved_product in the square of a displacement
 AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated, double share,
-                                     bool& all_finite) noexcept {
-  MassColumns row = columns(extrapolated);
-  AdvanceReport report;
+                                     ThreadTeam& team, bool& all_finite) noexcept {
+  const auto advance = [&](std::size_t first, std::size_t last) noexcept {
+    MassColumns row = columns(extrapolated);
+    for (std::size_t i = first; i < last; ++i) {
+      choose_rows(row, moving_[i]);
+      advanced_[i] = advance_row(row);
+    }
+  };
+  if (blocks_.count() == 1) {
+    advance(0, moving_.size());
+  } else {
+    team.run([&](std::size_t member) noexcept {
+      const ThreadTeam::Share blocks = team.share(member, blocks_.count());
+      advance(moving_from(blocks_.first(blocks.first)), moving_from(blocks_.first(blocks.last)));
+    });
+  }
 
-  for (const Range& range : moving_) {
-    choose_rows(row, range);
-    const AdvanceResult result = advance_row(row);
-    report.medium_work += share * viscosity_over_dt(range.first) * result.moved_product;
-    all_finite = all_finite && result.all_finite;
+  AdvanceReport report;
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    report.medium_work += share * viscosity_over_dt(moving_[i].first) * advanced_[i].moved_product;
+    all_finite = all_finite && advanced_[i].all_finite;
   }
   return report;
+}
+
+/// The first of the rows that are moved which begins at this MAT or after it.
+std::size_t MatArray::moving_from(std::uint32_t mat) const noexcept {
+  const auto found = std::partition_point(moving_.begin(), moving_.end(),
+                                          [mat](const Range& range) { return range.first < mat; });
+  return static_cast<std::size_t>(found - moving_.begin());
 }
 
 void MatArray::kick(const StepKernel& kernel, double part,

@@ -7,7 +7,9 @@
 
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/matter/mat_blocks.h"
 #include "sim_node/engine/matter/mat_layout.h"
 #include "sim_node/engine/matter/step_kernel.h"
 
@@ -41,14 +43,15 @@ struct AdvanceReport {
 class MatArray {
  public:
   /// Positions of step 0; delayed positions one period at the velocity v0 before them.
-  explicit MatArray(const NetworkDescription& description, const MatLayout& layout = {});
+  explicit MatArray(const NetworkDescription& description, const MatLayout& layout,
+                    const MatBlocks& blocks);
 
   /// Takes the forces of step 0, computed with the delayed positions of the constructor, for a
   /// start of second order: the delayed positions become those of the half-step velocity v0 - a0 dt
   /// / 2. Clears the forces.
   void start() noexcept;
 
-  void clear_forces() noexcept;
+  void clear_forces(ThreadTeam& team) noexcept;
   void clear_forces(std::span<const std::uint32_t> of_mats) noexcept;
 
   /// Rows [first, last) of masses.
@@ -70,12 +73,13 @@ class MatArray {
 
   /// Moves every mass by one step. Views of the positions from before are then those of the delayed
   /// ones. Real time: O(N), no allocation.
-  [[nodiscard]] AdvanceReport advance(const StepKernel& kernel) noexcept;
+  [[nodiscard]] AdvanceReport advance(const StepKernel& kernel, ThreadTeam& team) noexcept;
 
   /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
   /// @param extrapolated  4 x N, x(n) - dt v(n), then that of the next step
   [[nodiscard]] AdvanceReport extrapolate(const StepKernel& kernel,
-                                          AlignedVector<double>& extrapolated) noexcept;
+                                          AlignedVector<double>& extrapolated,
+                                          ThreadTeam& team) noexcept;
 
   /// Changes the velocities of the masses by a part of what the forces and gravity do in a period.
   void kick(const StepKernel& kernel, double part, AlignedVector<double>& velocity) noexcept;
@@ -159,6 +163,7 @@ class MatArray {
  private:
   MassColumns columns(double* extrapolated) noexcept;
   void choose_rows(MassColumns& columns, const Range& range) const noexcept;
+  std::size_t moving_from(std::uint32_t mat) const noexcept;
   void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
   bool are_alike(std::size_t a, std::size_t b) const noexcept;
   /// Z of the medium on a mass over dt [N/m].
@@ -169,7 +174,7 @@ class MatArray {
     return !weightless_.empty() && weightless_[mat] != 0 ? Vec3(Vec3::Zero()) : weight_step_;
   }
   AdvanceReport advance_rows(Advance advance_row, double* extrapolated, double share,
-                             bool& all_finite) noexcept;
+                             ThreadTeam& team, bool& all_finite) noexcept;
   Vec3 vector(const AlignedVector<double>& values, std::uint32_t mat) const noexcept {
     return layout_.vector(values.data(), mat);
   }
@@ -179,6 +184,7 @@ class MatArray {
   std::uint32_t count_non_finite() const noexcept;
 
   MatLayout layout_;
+  MatBlocks blocks_;
   std::size_t dimension_;
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
@@ -190,12 +196,14 @@ class MatArray {
   std::vector<double> mass_;                  // [kg], 0 unless a mass
   std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
   std::vector<std::uint8_t> driven_;          // by MAT; empty: none has a driven position
-  std::vector<Range> masses_;         // rows of neighbouring masses, of one weight and one medium
-  std::vector<Range> moving_;         // those that are moved
-  std::vector<std::uint32_t> ports_;  // MATs that move_port() moves
-  double dt_;                         // [s]
-  Vec3 weight_step_;                  // gravity * dt^2 [m]
-  double medium_viscosity_over_dt_;   // Z / dt [N/m]
+  std::vector<Range>
+      masses_;  // rows of neighbouring masses, of one weight, one medium and one block
+  std::vector<Range> moving_;                  // those that are moved
+  std::vector<AdvanceResult> advanced_;        // of each of these in this step
+  std::vector<std::uint32_t> ports_;           // MATs that move_port() moves
+  double dt_;                                  // [s]
+  Vec3 weight_step_;                           // gravity * dt^2 [m]
+  double medium_viscosity_over_dt_;            // Z / dt [N/m]
   std::vector<double> own_viscosity_over_dt_;  // by MAT; empty: all have that of the network
   bool in_medium_;                             // something is taken by it
   bool forces_are_present_ = false;

@@ -1,0 +1,79 @@
+// sim_node/engine/matter/mat_blocks.cpp
+#include "sim_node/engine/matter/mat_blocks.h"
+
+#include <algorithm>
+
+#include "node/assert.h"
+#include "sim_node/engine/core/vector_width.h"
+
+namespace cordis::engine {
+namespace {
+
+std::uint32_t reach_of(const Link& link) noexcept {
+  return link.mat_a < link.mat_b ? link.mat_b - link.mat_a : link.mat_a - link.mat_b;
+}
+
+/// How many MATs a link goes over; 1 % go farther.
+std::size_t reach_of(const std::vector<Link>& links) {
+  std::vector<std::uint32_t> reach;
+  reach.reserve(links.size());
+  for (const Link& link : links) reach.push_back(reach_of(link));
+  const auto place =
+      reach.begin() + static_cast<std::ptrdiff_t>(reach.size() - reach.size() / 100 - 1);
+  std::nth_element(reach.begin(), place, reach.end());
+  return std::max<std::size_t>(1, *place);
+}
+
+std::size_t block_count(const NetworkDescription& description) {
+  const std::size_t links = description.links.size();
+  if (links < MatBlocks::kMinLinks || description.freeze_tolerance > 0.0) return 1;
+  const std::size_t by_reach = description.mats.size() / (kBatchRows + reach_of(description.links));
+  const std::size_t by_size = links / MatBlocks::kLinksOfBlock;
+  return std::clamp<std::size_t>(std::min(by_reach, by_size), 1, MatBlocks::kMaxBlocks);
+}
+
+}  // namespace
+
+MatBlocks::MatBlocks(const NetworkDescription& description) : first_{0} {
+  const std::size_t count = block_count(description);
+  const std::size_t mat_count = description.mats.size();
+  // The work of a MAT: itself, and the links that begin at it.
+  std::vector<std::uint32_t> work(count > 1 ? mat_count : 0, 1);
+  if (count > 1) {
+    for (const Link& link : description.links) ++work[std::min(link.mat_a, link.mat_b)];
+  }
+  const std::size_t whole = mat_count + description.links.size();
+  std::size_t done = 0;
+  for (std::uint32_t i = 0; i < work.size(); ++i) {
+    done += work[i];
+    const std::size_t least = first_.back() + kBatchRows;
+    if (i + 1 >= least && (i + 1) % kBatchRows == 0 && i + 1 + kBatchRows <= mat_count &&
+        done >= whole * first_.size() / count) {
+      first_.push_back(i + 1);
+    }
+  }
+  first_.push_back(static_cast<std::uint32_t>(mat_count));
+}
+
+std::size_t MatBlocks::block_of(std::uint32_t mat) const noexcept {
+  CORDIS_ASSERT(mat < first_.back());
+  return static_cast<std::size_t>(std::upper_bound(first_.begin() + 1, first_.end(), mat) -
+                                  (first_.begin() + 1));
+}
+
+std::size_t MatBlocks::group_of(const Link& link) const noexcept {
+  if (count() == 1) return group_of_others();
+  const std::size_t low = block_of(std::min(link.mat_a, link.mat_b));
+  const std::size_t high = block_of(std::max(link.mat_a, link.mat_b));
+  if (low == high) return low;
+  return high == low + 1 ? group_between(low) : group_of_others();
+}
+
+MatBlocks::Mats MatBlocks::mats_of_group(std::size_t group) const noexcept {
+  CORDIS_ASSERT(group < group_count());
+  if (group == group_of_others()) return {0, first_.back()};
+  if (group < count()) return {first(group), last(group)};
+  return {first(group - count()), last(group - count() + 1)};
+}
+
+}  // namespace cordis::engine

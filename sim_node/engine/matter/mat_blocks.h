@@ -1,0 +1,51 @@
+// sim_node/engine/matter/mat_blocks.h -- neighbouring MATs that one thread of a team takes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/description/network.h"
+
+namespace cordis::engine {
+
+/// The MATs of a network in blocks of neighbours (domain decomposition).
+///
+/// First come the links within each block, then those from a block to the next, then all others. So each MAT
+/// sums its forces in an order that depends on the network alone, not on how many threads there are.
+class MatBlocks {
+ public:
+  static constexpr std::size_t kMinLinks = 16384;  ///< linear links, below which there is one block
+  static constexpr std::size_t kLinksOfBlock =
+      1024;  ///< at least so many linear links fall to a block
+  static constexpr std::size_t kMaxBlocks = 128;
+
+  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each; one
+  /// where the network freezes, has few linear links, or links that join MATs of any two places.
+  explicit MatBlocks(const NetworkDescription& description);
+
+  std::size_t count() const noexcept { return first_.size() - 1; }
+  std::uint32_t first(std::size_t block) const noexcept { return first_[block]; }
+  std::uint32_t last(std::size_t block) const noexcept {
+    return first_[block + 1];
+  }  ///< one past it
+  std::size_t block_of(std::uint32_t mat) const noexcept;
+
+  /// Links come in groups: count() within a block, count() - 1 from one to the next, one of all others; of one
+  /// block alone, one of all.
+  std::size_t group_count() const noexcept { return group_of_others() + 1; }
+  std::size_t group_of(const Link& link) const noexcept;
+  std::size_t group_between(std::size_t block) const noexcept { return count() + block; }
+  std::size_t group_of_others() const noexcept { return count() > 1 ? 2 * count() - 1 : 0; }
+  /// The MATs [first, last) that the links of a group join, at most.
+  struct Mats {
+    std::uint32_t first;
+    std::uint32_t last;
+  };
+  Mats mats_of_group(std::size_t group) const noexcept;
+
+ private:
+  std::vector<std::uint32_t> first_;  // MAT of each block, then the number of MATs
+};
+
+}  // namespace cordis::engine
