@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "node/assert.h"
@@ -73,6 +74,10 @@ bool is_same(const MessageIndex& a, const MessageIndex& b) {
   return first == second;
 }
 
+Channel lost_channel(std::uint16_t id) {
+  return {id, 0, "lost_channel_" + std::to_string(id), "", {}};
+}
+
 class Scanner {
  public:
   explicit Scanner(std::span<const std::byte> bytes) : bytes_(bytes) {
@@ -102,6 +107,7 @@ class Scanner {
   bool add_channel(std::span<const std::byte> content);
   bool knows_schema(std::uint16_t id);
   bool knows_channel(std::uint16_t id);
+  void name_lost_channel(std::uint16_t id);
   std::string read_chunk(const ChunkView& chunk, Statistics& statistics);
   void end_chunk();
   void return_unused();
@@ -121,6 +127,7 @@ class Scanner {
   Summary stored_;                               // of the file, where it is sound
   std::vector<std::uint16_t> borrowed_schemas_;  // of stored_, as no record of the data has them
   std::vector<std::uint16_t> borrowed_channels_;
+  std::set<std::uint16_t> lost_channels_;    // named by name_lost_channel()
   std::vector<std::uint64_t> known_chunks_;  // of stored_, their places in order
   std::uint64_t position_ = 0;
   Scan scan_;
@@ -162,6 +169,10 @@ bool Scanner::add_schema(std::span<const std::byte> content) {
 bool Scanner::add_channel(std::span<const std::byte> content) {
   auto channel = parse_channel(content);
   if (channel && channel->schema_id != 0 && !knows_schema(channel->schema_id)) return false;
+  if (channel && fills(*channel, content) && lost_channels_.erase(channel->id) != 0) {
+    scan_.summary.channels.erase(channel->id);
+    std::erase(borrowed_channels_, channel->id);
+  }
   return add_description(scan_.summary.channels, std::move(channel), content);
 }
 
@@ -185,6 +196,13 @@ bool Scanner::knows_channel(std::uint16_t id) {
   scan_.summary.channels.insert(*stored);
   borrowed_channels_.push_back(id);
   return true;
+}
+
+/// Gives a channel a topic of its number. Its description is lost, but not its messages.
+void Scanner::name_lost_channel(std::uint16_t id) {
+  if (!scan_.summary.channels.try_emplace(id, lost_channel(id)).second) return;
+  lost_channels_.insert(id);
+  borrowed_channels_.push_back(id);
 }
 
 /// Drops what was taken from the summary of the file for messages that could not be kept.
@@ -217,9 +235,7 @@ std::string Scanner::read_chunk(const ChunkView& chunk, Statistics& statistics) 
         if (!message) {
           problem = "a message in it is too short";
         } else if (last == nullptr || last->channel_id != message->channel_id) {
-          if (!knows_channel(message->channel_id))
-            problem =
-                "channel " + std::to_string(message->channel_id) + " of a message is not known";
+          if (!knows_channel(message->channel_id)) name_lost_channel(message->channel_id);
           last = &entries_[message->channel_id];
           last->channel_id = message->channel_id;
         }

@@ -47,7 +47,8 @@ bool is_mcap(std::span<const std::byte> bytes) noexcept;
 
 /// Reads every record and unpacks every chunk. Chunks whose CRC does not fit are damages. A channel
 /// or schema whose record is damaged is taken from the summary of the file, where that is sound; so is
-/// the place of a chunk.
+/// the place of a chunk. Where no summary says it either, messages in chunks keep a channel with the
+/// topic lost_channel_ and its number.
 /// Precondition: is_mcap().
 Scan scan(std::span<const std::byte> bytes);
 
