@@ -15,6 +15,7 @@
 #include "sim_node/engine/integrators/modal_block.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/stability/start_tangent.h"
 
 namespace cordis::plan {
@@ -26,20 +27,6 @@ double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mat
   double most = 0.0;  // of 1 / m
   for (const std::uint32_t mat : mats) most = std::max(most, graph.inverse_mass[mat]);
   return most;
-}
-
-/// The step at which one contact of a set diverges by itself, by its linear part.
-double limit_of_one_contact(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  const LimitWeights weights = limit_weights(network, Limit::kDiverging);
-  double limit = std::numeric_limits<double>::infinity();
-  for (const ContactBound& crowd : graph.crowds) {
-    const double inverse_mass = lightest(graph, crowd.members) + lightest(graph, crowd.others);
-    for (const auto& state : network.state_machines[network.sets[crowd.set].state_machine].states) {
-      limit = std::min(limit, limit_step(weights.stiffness * state.stiffness * inverse_mass,
-                                         weights.viscosity * state.viscosity * inverse_mass));
-    }
-  }
-  return limit;
 }
 
 /// The first state link that `leapfrog` solves for its speed beside implicit dampers. It sees the
@@ -72,11 +59,11 @@ std::optional<std::uint32_t> bend_beside_dampers(const engine::NetworkDescriptio
   return {};
 }
 
-/// Step beyond which the tangent at the start, or one contact, diverges [s].
-double diverging_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
-  const auto limit_at = [&graph](const engine::NetworkDescription& varied) {
+/// Step beyond which the tangent at the start diverges [s].
+double diverging_step_of(const engine::NetworkDescription& network) {
+  const auto limit_at = [](const engine::NetworkDescription& varied) {
     if (friction_beside_dampers(varied)) return std::numeric_limits<double>::infinity();
-    return std::min(StartTangent(varied).diverging_step(), limit_of_one_contact(varied, graph));
+    return StartTangent(varied).diverging_step();
   };
   return limit_of_all_steps(network, limit_at);
 }
@@ -89,9 +76,21 @@ struct ModalLoad {
   StepBound worst;
 };
 
+/// What a liaison surely adds to a block of modes: K + 2 Z / dt, of one with states as it acts at the start.
+double surely_as_stiff(const engine::NetworkDescription& network, const Edge& edge) {
+  if (edge.liaison.kind != LiaisonKind::kStateLink) {
+    return edge.stiffness + 2.0 * edge.viscosity / network.step;
+  }
+  const engine::StateLink& link = network.state_links[edge.liaison.index];
+  const Tangent tangent =
+      tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
+  return std::max(tangent.stiffness + 2.0 * tangent.viscosity / network.step, 0.0);
+}
+
 ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   const engine::ModalBlock block(network);
   ModalLoad load;
+  double most = 0.0;
   if (!graph.crowds.empty()) load.together = std::numeric_limits<double>::infinity();
   for (const Edge& edge : graph.edges) {
     const bool to_port = network.mats[edge.mat_a].kind == engine::MatKind::kPort ||
@@ -103,9 +102,10 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
     const double stiffness = edge.stiffness + 2.0 * edge.viscosity / network.step;
     const double root = std::sqrt(at_a) + std::sqrt(at_b);
     load.together += stiffness * root * root;
-    const double alone = stiffness * (at_a + at_b - 2.0 * between);
-    if (alone < load.alone) continue;
-    load.alone = alone;
+    const double compliance = at_a + at_b - 2.0 * between;
+    load.alone = std::max(load.alone, surely_as_stiff(network, edge) * compliance);
+    if (stiffness * compliance < most) continue;
+    most = stiffness * compliance;
     load.worst.liaison = edge.liaison;
     load.worst.mat = at_a > at_b ? edge.mat_a : edge.mat_b;
   }
@@ -229,7 +229,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
     stability = stability_of_modes(network, graph);
   } else {
     stability.certified = certified_bound(network, graph);
-    stability.diverging_step = diverging_step_of(network, graph);
+    stability.diverging_step = diverging_step_of(network);
   }
   stability.bounded = graph.bounded;
   stability.step = network.step;

@@ -21,8 +21,7 @@ inline constexpr const char* kLimitsCross = "the two limits of the step exclude 
 struct Stability {
   /// Stable in every pose and every combination of states, with so many partners as `sets` says.
   StepBound certified;
-  /// Beyond it the scene diverges at the pose of its start once its links are in their stiffest
-  /// states [s].
+  /// Beyond it the scene diverges at the pose of its start, with what acts there [s].
   double diverging_step = 0.0;
   bool bounded = true;             ///< false: the certificate holds within a Reach alone
   double step = 0.0;               ///< step of the network [s]

@@ -218,11 +218,9 @@ TEST(StartTangent, OfASetIsTheTrueLimitOfALinearOne) {
 }
 
 TEST(StartTangent, TakesNoPairThatIsNotPressed) {
-  // A contact that just touches has a tangent on one side alone; one contact by itself diverges
-  // from 2 sqrt(m / 2 K) on.
+  // A contact that just touches has a tangent on one side alone.
   const NetworkDescription scene = lattice(3, 0.01, contact(100.0), 0.01, 0.02);
-  const double one = 2.0 / std::sqrt(200.0 / 0.001);
-  EXPECT_NEAR(plan_of(scene, 10.0).stability.diverging_step, one, 1e-6 * one);
+  EXPECT_TRUE(std::isinf(plan_of(scene, 10.0).stability.diverging_step));
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST(Slope, IsInUncertaintyOfWhatPullsWhereItsEndsMeetAndTurns) {
   }
   EXPECT_NE(largest_slope(state_machine(40.0), -0.02, 3, Reach{0.3}).uncertainty, nullptr);
   // A chord never turns; what pushes at 0, or never pulls, never pulls its ends about each other.
-  EXPECT_EQ(largest_slope(state_machine(0.0, orbit), 0.0, 1, Reach{0.3}).uncertainty, nullptr);
+  EXPECT_EQ(largest_slope(state_machine(0.0, rope), 0.0, 1, Reach{0.3}).uncertainty, nullptr);
   EXPECT_EQ(largest_slope(state_machine(40.0), 0.02, 3, Reach{0.3}).uncertainty, nullptr);
   EXPECT_EQ(largest_slope(contact(40.0), -0.02, 3, Reach{0.3}).uncertainty, nullptr);
 }
@@ -223,30 +223,33 @@ TEST(Slope, OfRingsIsThatOfTheirSteepestSum) {
   EXPECT_DOUBLE_EQ(largest_slope(state_machine(0.0, law), 0.0, 3, {}).stiffness, 200.0);
 }
 
-TEST(Tangent, IsThatOfTheStiffestStateAtTheDistance) {
+TEST(Tangent, IsThatOfTheStateOfTheStartWhereItActs) {
   engine::StateMachine touch = contact(100.0);
+  touch.states[0].viscosity = 0.5;
   touch.states.push_back(touch.states[0]);
-  touch.states[1].stiffness = 20.0;
-  touch.states[1].viscosity = 0.5;
+  touch.states[1].stiffness = 1e6;
   const engine::LawPoint pressed{0.09, 0.09 - 0.1};
   const engine::LawPoint stretched{0.11, 0.11 - 0.1};
-  // dt^2 K + 2 dt Z decides: a short step is nearer to its limit by the viscosity.
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1e-3).stiffness, 20.0);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1e-3).viscosity, 0.5);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1.0).stiffness, 100.0);
-  EXPECT_DOUBLE_EQ(plan::stiffest_tangent(touch, pressed, 1.0).viscosity, 0.0);
-  EXPECT_NEAR(plan::stiffest_tangent(state_machine(100.0), pressed, 1e-3).tension, -1.0, 1e-12);
-  // Of a state that is not that of the start, the spring alone counts, and where it is pressed.
-  EXPECT_NEAR(plan::stiffest_tangent(touch, pressed, 1e-3).tension, -0.2, 1e-12);
-  EXPECT_FALSE(plan::stiffest_tangent(touch, pressed, 1e-3).acts);
-  EXPECT_EQ(plan::stiffest_tangent(touch, stretched, 1e-3).tension, 0.0);
-  EXPECT_TRUE(plan::stiffest_tangent(touch, pressed, 1.0).acts);
-  EXPECT_FALSE(plan::stiffest_tangent(touch, stretched, 1.0).acts);
+  const plan::Tangent acts = plan::tangent_at_start(touch, pressed);
+  EXPECT_TRUE(acts.acts);
+  EXPECT_DOUBLE_EQ(acts.stiffness, 100.0);
+  EXPECT_DOUBLE_EQ(acts.viscosity, 0.5);
+  EXPECT_NEAR(acts.tension, -1.0, 1e-12);
+  for (const engine::LawPoint& let_go : {stretched, engine::LawPoint{0.1, 0.0}}) {
+    const plan::Tangent none = plan::tangent_at_start(touch, let_go);
+    EXPECT_FALSE(none.acts);
+    EXPECT_EQ(none.stiffness, 0.0);
+    EXPECT_EQ(none.viscosity, 0.0);
+    EXPECT_EQ(none.tension, 0.0);
+  }
+  touch.states[0].force_limit = 0.3;  // it pushes with that, and has no slope
+  EXPECT_FALSE(plan::tangent_at_start(touch, pressed).acts);
+  EXPECT_DOUBLE_EQ(plan::tangent_at_start(touch, pressed).tension, -0.3);
   // 57.1 in units of depth / diameter^2 at the distance of rest, 2^(1/6) diameters.
   const engine::StateMachine ball = state_machine(0.0, lennard_jones(1.0, 1.0));
   const double rest = std::pow(2.0, 1.0 / 6.0);
-  EXPECT_NEAR(plan::stiffest_tangent(ball, {rest, rest - 1.0}, 1e-3).stiffness, 57.146, 0.01);
-  EXPECT_NEAR(plan::stiffest_tangent(ball, {rest, rest - 1.0}, 1e-3).tension, 0.0, 1e-9);
+  EXPECT_NEAR(plan::tangent_at_start(ball, {rest, rest - 1.0}).stiffness, 57.146, 0.01);
+  EXPECT_NEAR(plan::tangent_at_start(ball, {rest, rest - 1.0}).tension, 0.0, 1e-9);
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ class SceneWriter {
         random_of_drives_(seed ^ 0x5bd1e995U),
         random_of_variables_(seed ^ 0x2545f491U),
         random_of_media_(seed ^ 0x1b873593U),
-        random_of_bends_(seed ^ 0x9e3779b9U) {
+        random_of_bends_(seed ^ 0x9e3779b9U),
+        random_of_lively_laws_(seed ^ 0x7feb352dU) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -45,6 +46,7 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
+    if (matter_ == Matter::kAnything) perhaps_add_lively_law();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
   lively: {quantity: kinetic_energy}
@@ -579,6 +581,79 @@ step: {{rate_hz: {}, integrator: {}{}}}
     links_ += "  - {liaison: of_bends, between: [wall, \"p[0]\", \"p[1]\"]}\n";
   }
 
+  double lively_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_lively_laws_()) / 4294967296.0;
+  }
+  double lively_decades(double low, double high) {
+    return low * std::pow(high / low, lively_between(0.0, 1.0));
+  }
+
+  /// Viscosity that grows with the speed, beside a spring that is far stretched.
+  std::string fast_law() {
+    const double stiffness = lively_decades(10.0, 3000.0);
+    const double exponent = lively_between(0.0, 1.0) < 0.5 ? 2.0 : 3.0;
+    const double coefficient = lively_decades(0.01, 20.0);
+    const std::string law = lively_between(0.0, 1.0) < 0.8
+                                ? fmt::format("{{kind: power, coefficient: {:.4g}, exponent: {}}}",
+                                              coefficient, exponent)
+                                : fmt::format("\"{:.4g} * speed_m_per_s^3\"", coefficient);
+    return fmt::format("stiffness_n_per_m: {:.4g}, dissipation: {}", stiffness, law);
+  }
+
+  /// A law that drives the motion, beside a spring.
+  std::string driving_law() {
+    const double stiffness = lively_decades(0.5, 300.0);
+    const double size = lively_decades(0.001, 0.3);
+    const std::string spring = fmt::format("stiffness_n_per_m: {:.4g}, ", stiffness);
+    switch (random_of_lively_laws_() % 4) {
+      case 0:
+        return spring + fmt::format("dissipation: \"-{:.4g} * speed_m_per_s\"", size);
+      case 1:
+        return spring +
+               fmt::format("dissipation: {{kind: power, coefficient: -{:.4g}, exponent: 2}}", size);
+      case 2:
+        return spring + fmt::format(
+                            "dissipation: {{kind: table, at_m_per_s: [-1, 0, 1], force_n: "
+                            "[{0:.4g}, 0, -{0:.4g}]}}",
+                            size);
+      default:
+        return fmt::format("elasticity: \"{:.4g} * elongation_m - {:.4g} * speed_m_per_s\"",
+                           stiffness, size);
+    }
+  }
+
+  /// A law whose potential falls without an end.
+  std::string falling_law() {
+    const double force = (lively_between(0.0, 1.0) < 0.5 ? -1.0 : 1.0) * lively_decades(0.1, 30.0);
+    switch (random_of_lively_laws_() % 3) {
+      case 0:
+        return fmt::format(
+            "elasticity: {{kind: table, at_m: [-1, 1], force_n: [{0:.4g}, {0:.4g}]}}", force);
+      case 1:
+        return fmt::format("elasticity: \"{:.4g} - 0 * elongation_m\"", force);
+      default:
+        return fmt::format("elasticity: \"-{:.4g} * elongation_m\"", std::abs(force));
+    }
+  }
+
+  /// In a fifth of the scenes a law that is lively, and perhaps one that only the energy confines.
+  void perhaps_add_lively_law() {
+    const double choice = lively_between(0.0, 1.0);
+    if (choice > 0.2) return;
+    const std::string law = choice < 0.1    ? fast_law()
+                            : choice < 0.15 ? driving_law()
+                                            : falling_law();
+    liaisons_ += "  lively: {kind: state_machine, " + law + "}\n";
+    links_ += fmt::format("  - {{liaison: lively, between: [wall, \"p[0]\"], rest_m: {:.4g}}}\n",
+                          lively_between(0.1, 0.6));
+    if (choice < 0.1 || lively_between(0.0, 1.0) < 0.3) return;
+    liaisons_ += fmt::format(
+        "  confines: {{kind: state_machine, elasticity: {{kind: power, coefficient: {:.4g}, "
+        "exponent: 3}}}}\n",
+        lively_decades(100.0, 1e5));
+    links_ += "  - {liaison: confines, between: [wall, \"p[0]\"], rest_m: 0.1}\n";
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -678,6 +753,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_variables_;  // likewise
   std::mt19937 random_of_media_;      // likewise
   std::mt19937 random_of_bends_;      // likewise
+  std::mt19937 random_of_lively_laws_;  // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   int space_ = 3;

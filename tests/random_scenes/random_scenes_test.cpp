@@ -99,6 +99,8 @@ class Brought {
     pumped_ = std::max(pumped_, -now.dissipated);
   }
   double energy() const { return start_ + fallen_ + well_ + from_outside_ + switched_ + pumped_; }
+  /// What no reach knows of.
+  double unforeseen() const { return fallen_ + from_outside_ + switched_; }
 
  private:
   double start_;
@@ -285,6 +287,15 @@ double stored_at_start(const NetworkDescription& network) {
   return sum;
 }
 
+/// True if a state has a force limit: its elastic energy is that without the limit, more than it gives back.
+bool has_force_limit(const NetworkDescription& network) {
+  return std::ranges::any_of(network.state_machines, [](const engine::StateMachine& each) {
+    return std::ranges::any_of(each.states, [](const engine::LinkState& state) {
+      return std::isfinite(state.force_limit);
+    });
+  });
+}
+
 /// What comes of a run.
 struct Outcome {
   std::string growth;  // why it is not bounded
@@ -308,6 +319,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   // that of one step to it.
   const bool is_cordis = network.integrator == engine::IntegratorKind::kCordis;
   const double kinetic_offset = is_cordis ? 0.0 : 0.25 * fall_of_one_step(network);
+  const bool limits_force = has_force_limit(network);
   JumpWatch jumps(network);
   double rounding = 0.0;
   Outcome run;
@@ -327,8 +339,18 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     jumps.look(world);
     if (is_within && n % 100 > 0 && n > 100) continue;
     const Energy energy = world.energy();
-    if (plan::is_beyond(reach, world, energy)) return run;
     brought.look(energy);
+    const double elastic = limits_force ? 0.0 : energy.elastic - energy.elastic_error;
+    const double whole = energy.kinetic + std::max(elastic, 0.0);
+    const double foreseen =
+        whole - brought.unforeseen() - std::abs(energy.integration_error()) - jumps.energy();
+    constexpr double kSpare = 1.1;
+    if (foreseen > kSpare * reach.energy) {
+      run.growth = "laws have brought in " + std::to_string(foreseen / reach.energy) +
+                   " times the energy of the reach at step " + std::to_string(n);
+      return run;
+    }
+    const bool is_beyond = plan::is_beyond(reach, world, energy);
     constexpr double kOpen = 1e-9;
     if (is_cordis && std::abs(energy.residual()) >
                          kOpen * std::max(energy.largest, brought.energy()) + rounding) {
@@ -337,7 +359,10 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
       return run;
     }
     constexpr double kPumped = 1e30;  // [J]: changes of state bring in ever more
-    if (!(brought.energy() < kPumped)) return run;
+    if (!(brought.energy() < kPumped)) {
+      if (!(brought.unforeseen() > 0.1 * brought.energy())) run.growth = "laws bring in ever more";
+      return run;
+    }
     const double gain =
         energy.integration_error() - std::max(1.0, share) * jumps.energy() - kinetic_offset;
     const double error = gain / brought.energy();
@@ -346,6 +371,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
       run.growth = "made " + std::to_string(error) + " of the energy at step " + std::to_string(n);
       return run;
     }
+    if (is_beyond) return run;
   }
   return run;
 }
@@ -415,35 +441,7 @@ TEST(RandomScenes, CertifiedRunsStayBounded) {
   RecordProperty("largest energy, in swings", std::to_string(worst));
 }
 
-/// A state machine of one state, the stiffest of a link where it starts, as StartTangent takes it.
-engine::StateMachine stiffest_alone(const engine::StateMachine& all, const engine::LawPoint& point,
-                                    double step) {
-  engine::StateMachine stiffest;
-  double largest = -std::numeric_limits<double>::infinity();
-  for (std::size_t s = 0; s < all.states.size(); ++s) {
-    engine::StateMachine one;
-    one.states = {all.states[s]};
-    engine::LinkState& state = one.states[0];
-    state.first_exit = state.last_exit = 0;
-    const plan::Tangent own = plan::stiffest_tangent(one, point, step);
-    const double touching = 1e-6 * std::abs(own.stiffness) * std::abs(point.distance);
-    const bool acts = own.acts && (state.pulls || own.tension < -touching) &&
-                      (state.pushes || own.tension > touching);
-    if (s != all.start || !acts) {
-      state.elasticity = state.dissipation = {};
-      state.pulls = state.pushes = true;
-      state.force_limit = std::numeric_limits<double>::infinity();
-    }
-    const plan::Tangent tangent = plan::stiffest_tangent(one, point, step);
-    const double number = step * step * tangent.stiffness + 2.0 * step * tangent.viscosity;
-    if (number <= largest) continue;
-    largest = number;
-    stiffest = one;
-  }
-  return stiffest;
-}
-
-/// The scene at rest in the pose of its start, each link in its stiffest state, at this times the step
+/// The scene at rest in the pose of its start, each link in the state of its start, at this times the step
 /// beyond which that diverges; none where that step has no end.
 std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double times) {
   NetworkDescription network = scene.network;
@@ -461,8 +459,7 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
   for (engine::Mat& mat : network.mats) mat.velocity.setZero();
   std::vector<engine::StateMachine> alone;
   for (engine::StateLink& link : network.state_links) {
-    alone.push_back(stiffest_alone(network.state_machines[link.state_machine],
-                                   plan::start_point(network, link), network.step));
+    alone.push_back(plan::start_state_alone(network.state_machines[link.state_machine]));
     link.state_machine =
         static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
   }

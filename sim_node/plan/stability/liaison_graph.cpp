@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
@@ -38,6 +39,8 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
   return largest;
 }
 
+constexpr const char* kFallsWithoutEnd =
+    "it brings in energy without an end, and a law without a largest slope may take it";
 constexpr const char* kStartsTooStrong =
     "its start force is above stiffness times distance, and turns without a limit where its ends "
     "meet";
@@ -53,6 +56,14 @@ void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
   graph.bounded = graph.bounded && slope.bounded;
   if (slope.uncertainty != nullptr && !graph.uncertainty)
     graph.uncertainty = {liaison, slope.uncertainty};
+}
+
+/// The stiffness across a liaison at one point of its start [N/m]: its tension over its length. The largest
+/// slope of one with several states has none, because exits end a state that pulls before the ends meet.
+double stiffness_across_at(const engine::StateMachine& state_machine, int dimension,
+                           const engine::LawPoint& start) {
+  if (dimension == 1 || state_machine.is_stateless() || start.distance <= 0.0) return 0.0;
+  return pull_at_start(state_machine, start) / start.distance;
 }
 
 /// One side of a set: its touching pairs, and those beyond.
@@ -162,17 +173,30 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   Reach here = reach_between(reach, network, set.set_p, others);
   const StartPairs near(network, set);
-  double stored = 0.0;  // in the pair that stores the most
-  for (const StartPair& pair : near.pairs()) {
-    stored = std::max(stored, stored_in(state_machine, start_point(network, set, pair)));
-  }
-  here.energy += stored;
-  here.brought += stored;
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
-  const Slope slope = with_friction(
-      on_surfaces ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
-                  : largest_slope(state_machine, rest, network.dimension, here),
-      state_machine);
+  double stored = 0.0;  // in the pair that stores the most
+  double across = 0.0;
+  double nearest = set.range;
+  for (const StartPair& pair : near.pairs()) {
+    const engine::LawPoint start = start_point(network, set, pair);
+    stored = std::max(stored, stored_in(state_machine, start));
+    nearest = std::min(nearest, pair.distance);
+    if (!on_surfaces)
+      across = std::max(across, stiffness_across_at(state_machine, network.dimension, start));
+  }
+  const auto& law = state_machine.states[state_machine.start].elasticity;
+  const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
+  const double fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, rest, here);
+  here.energy += stored;
+  here.brought += stored + (std::isfinite(fall) ? fall : 0.0);
+  here.range = set.range;
+  Slope slope = on_surfaces
+                    ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
+                    : largest_slope(state_machine, rest, network.dimension, here);
+  slope.stiffness = std::max(slope.stiffness, across);
+  slope = with_friction(slope, state_machine);
+  if (!slope.bounded && !std::isfinite(fall) && slope.uncertainty == nullptr)
+    slope.uncertainty = kFallsWithoutEnd;
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =
@@ -197,16 +221,6 @@ double largest_of_others(const ContactBound& crowd, const std::vector<double>& v
 }
 
 namespace {
-
-/// The stiffness across a link at the start of the scene [N/m]: its tension over its length. The largest slope
-/// of a link with several states has none, because exits end a state that pulls before the ends meet.
-double stiffness_across_at_start(const NetworkDescription& network, const engine::StateLink& link) {
-  const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
-  if (network.dimension == 1 || state_machine.is_stateless()) return 0.0;
-  const engine::LawPoint start = start_point(network, link);
-  const double tension = stiffest_tangent(state_machine, start, network.step).tension;
-  return start.distance > 0.0 ? std::max(tension, 0.0) / start.distance : 0.0;
-}
 
 /// A bend as a link along each side: |v / l - R u / k|^2 is at most (1 / k + 1 / l) (|u|^2 / k + |v|^2 / l), as
 /// equal as can be where it bends the most.
@@ -252,7 +266,9 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     Slope slope =
         largest_slope(network.state_machines[link.state_machine], link.rest_length,
                       network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
-    slope.stiffness = std::max(slope.stiffness, stiffness_across_at_start(network, link));
+    slope.stiffness = std::max(slope.stiffness,
+                               stiffness_across_at(network.state_machines[link.state_machine],
+                                                   network.dimension, start_point(network, link)));
     note(slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,
@@ -274,6 +290,9 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     add_bend(network.bends[index], index, graph);
   }
   for (index = 0; index < network.sets.size(); ++index) add_set(network, index, reach, graph);
+  if (reach.endless && !graph.bounded && !graph.uncertainty) {
+    graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
+  }
   return graph;
 }
 

@@ -17,8 +17,7 @@ using engine::Instruction;
 using engine::Operation;
 using engine::Quantity;
 
-constexpr Interval kAny{-std::numeric_limits<double>::infinity(),
-                        std::numeric_limits<double>::infinity()};
+constexpr Interval kAny = kAnyNumber;
 constexpr std::size_t kVariables = 2;  // distance, speed
 
 double size_of(const Interval& u) {
@@ -120,6 +119,7 @@ class Evaluation {
       case Quantity::kDistance:
         return {box_.distance, {one, {}}};
       case Quantity::kElongation:
+        if (box_.rest_moves) return kUnknown;
         return {box_.distance - Interval{box_.rest_length, box_.rest_length}, {one, {}}};
       case Quantity::kSpeed:
         return {box_.speed, {Interval{}, one}};
@@ -127,6 +127,15 @@ class Evaluation {
         return {box_.mass_a};
       case Quantity::kMassB:
         return {box_.mass_b};
+      case Quantity::kForce:
+        return {box_.force};
+      case Quantity::kAge:
+      case Quantity::kImpulse:
+      case Quantity::kSlid:
+        return {box_.remembered};
+      case Quantity::kRestLength:
+        if (box_.rest_moves) return kUnknown;
+        return {{box_.rest_length, box_.rest_length}};
       default:
         return kUnknown;
     }

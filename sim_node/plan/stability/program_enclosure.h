@@ -1,6 +1,8 @@
 // sim_node/plan/stability/program_enclosure.h -- how steep the value of an expression can become.
 #pragma once
 
+#include <limits>
+
 #include "sim_node/engine/expressions/program.h"
 
 namespace cordis::plan {
@@ -11,6 +13,9 @@ struct Interval {
   double high = 0.0;
 };
 
+inline constexpr Interval kAnyNumber{-std::numeric_limits<double>::infinity(),
+                                     std::numeric_limits<double>::infinity()};
+
 /// What a program may meet of a link. The elongation is the distance less the rest length.
 struct LinkBox {
   Interval distance;  ///< [m]
@@ -18,6 +23,9 @@ struct LinkBox {
   double rest_length = 0.0;
   Interval mass_a;  ///< [kg]
   Interval mass_b;
+  Interval force = kAnyNumber;       ///< tension [N], for conditions as the next two
+  Interval remembered = kAnyNumber;  ///< age [s], impulse [N s] and stretch of friction [m]
+  bool rest_moves = false;           ///< nothing is known of the rest length, nor of the elongation
 };
 
 /// No tangent of the program in a box is above these: over the distance, and over the speed.

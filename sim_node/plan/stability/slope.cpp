@@ -5,14 +5,12 @@
 #include <cmath>
 #include <limits>
 
-#include "sim_node/engine/links/bend_shape.h"
-#include "sim_node/plan/stability/drive_extremes.h"
-#include "sim_node/plan/stability/start_point.h"
+#include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/meeting_exit.h"
 
 namespace cordis::plan {
 namespace {
 
-constexpr double kMinSpeed = 1.0;  // [m/s]
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 constexpr const char* kPullsWhereEndsMeet =
@@ -22,6 +20,8 @@ constexpr const char* kNoLargestSlope = "no largest slope of its expression is k
 constexpr const char* kBeginsAnywhere =
     "a change of state may begin it where it is steep, for its law has no largest slope";
 constexpr const char* kDrivesApart = "it drives its ends apart ever harder";
+constexpr const char* kDrivesMotion =
+    "its force over the speed drives the motion, and nothing bounds the energy of that";
 constexpr const char* kCrushed =
     "the energy of the scene may crush it to length 0, where it turns about between two steps";
 constexpr const char* kPullsWhereNormalFlips =
@@ -38,32 +38,6 @@ bool is_jump(const engine::Law& law) {
   }
   const auto* balls = std::get_if<engine::LennardJones>(&law);
   return balls != nullptr && balls->cutoff > 0.0 && balls->cutoff < kWell * balls->diameter;
-}
-
-}  // namespace
-
-double energy_at(const Reach& reach) {
-  const double inverse = (reach.mass_a.high > 0.0 ? 1.0 / reach.mass_a.high : 0.0) +
-                         (reach.mass_b.high > 0.0 ? 1.0 / reach.mass_b.high : 0.0);
-  const double meeting = inverse > 0.0 ? 2.0 * reach.speed * reach.speed / inverse : 0.0;
-  constexpr double kSpare = 1.01;  // for the sum over the tension
-  return kSpare * (reach.brought + meeting);
-}
-
-namespace {
-
-/// The least and the most that an elasticity pulls at a distance, between any two of the masses of the
-/// reach [N]: the masses stand at their ends.
-Interval tension_between(const engine::Law& law, double distance, double elongation,
-                         const Reach& reach) {
-  Interval all{kNoLimit, -kNoLimit};
-  for (const double mass_a : {reach.mass_a.low, reach.mass_a.high}) {
-    for (const double mass_b : {reach.mass_b.low, reach.mass_b.high}) {
-      const double tension = elastic_tension(law, {distance, elongation, 0.0, mass_a, mass_b});
-      all = {std::min(all.low, tension), std::max(all.high, tension)};
-    }
-  }
-  return all;
 }
 
 /// How far one way a state is stretched by the energy of the reach [m], its tension summed up; infinite
@@ -112,15 +86,11 @@ Stretch stretch_within(const engine::LinkState& state, double rest_length, bool 
 }
 
 /// Adds the slopes of an expression over the distances and speeds that can be reached.
+/// @param speed  of its ends, either way [m/s]
 void add_expression(const engine::Program& program, const Stretch& stretch, double rest_length,
-                    bool turns, const Reach& reach, Slope& slope) {
+                    bool turns, double speed, const Reach& reach, Slope& slope) {
   constexpr double kFar = 1e9;  // [m], [m/s]
   constexpr double kSame = 1.05;
-  const double lightest = std::max(reach.mass_a.high, reach.mass_b.high) > 0.0
-                              ? std::min(reach.mass_a.low > 0.0 ? reach.mass_a.low : kNoLimit,
-                                         reach.mass_b.low > 0.0 ? reach.mass_b.low : kNoLimit)
-                              : kNoLimit;
-  const double speed = 2.0 * reach.speed + std::sqrt(2.0 * reach.brought / lightest);
   LinkBox box{{rest_length - stretch.shorter, rest_length + stretch.longer},
               {-speed, speed},
               rest_length,
@@ -129,10 +99,14 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const Interval within = box.distance;
   const SteepestSlopes near = steepest_slopes(program, box);
+  const auto is_same = [&near](const SteepestSlopes& far) {
+    return far.over_distance <= kSame * near.over_distance &&
+           far.over_speed <= kSame * near.over_speed;
+  };
   box.distance = {turns ? 0.0 : -kFar, kFar};
+  const bool needs_confinement = !stretch.confined && !is_same(steepest_slopes(program, box));
   box.speed = {-kFar, kFar};
   const SteepestSlopes far = steepest_slopes(program, box);
-  const auto same = [](double of_far, double of_near) { return of_far <= kSame * of_near; };
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
     slope.bounded = false;
     slope.uncertainty = kNoLargestSlope;
@@ -140,13 +114,12 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   }
   slope.stiffness += near.over_distance;
   slope.viscosity += near.over_speed;
-  const bool has_largest =
-      same(far.over_distance, near.over_distance) && same(far.over_speed, near.over_speed);
+  const bool has_largest = is_same(far);
   if (!has_largest) box.distance = within;
   slope.variation += near.over_distance - flattest_slope(program, box, near.over_distance);
   if (has_largest) return;
   slope.bounded = false;
-  if (!stretch.confined) slope.uncertainty = kConfinesNothing;
+  if (needs_confinement) slope.uncertainty = kConfinesNothing;
 }
 
 /// What an expression without a largest slope has where it is looked at.
@@ -184,10 +157,14 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   engine::LawRange spring{reach.elongation, rest_length, reach.energy};
   spring.turns = turns;
   if (is_power) spring.argument = std::max(stretch.longer, stretch.shorter);
-  engine::LawRange damper{reach.speed, rest_length};
+  const double speed = relative_speed(state, reach);
+  const auto* viscous_power = std::get_if<engine::Power>(&state.dissipation);
+  const bool is_viscous_root = viscous_power != nullptr && viscous_power->exponent < 1.0;
+  // The slope of a root is followed up to a hundredth of this.
+  engine::LawRange damper{is_viscous_root ? reach.speed : speed, rest_length};
   damper.viscous = true;
   if (elastic != nullptr) {
-    add_expression(elastic->program, stretch, rest_length, turns, reach, slope);
+    add_expression(elastic->program, stretch, rest_length, turns, speed, reach, slope);
     if (slope.uncertainty != nullptr) slope.stiffness += sampled(state.elasticity, spring);
   } else {
     const engine::LawSlope law = engine::largest_slope(state.elasticity, spring);
@@ -195,20 +172,24 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.variation += variation_of(state.elasticity, law.value);
     slope.bounded = slope.bounded && law.bounded;
     if (is_jump(state.elasticity)) slope.uncertainty = kJumps;
-    const auto* power = std::get_if<engine::Power>(&state.elasticity);
-    if (power != nullptr && power->coefficient < 0.0 && power->exponent > 1.0) {
-      slope.uncertainty = kDrivesApart;
-    }
   }
   if (viscous != nullptr) {
     const bool was_sure = slope.uncertainty == nullptr;
-    add_expression(viscous->program, stretch, rest_length, turns, reach, slope);
+    add_expression(viscous->program, stretch, rest_length, turns, speed, reach, slope);
     if (was_sure && slope.uncertainty != nullptr)
       slope.viscosity += sampled(state.dissipation, damper);
   } else {
     const engine::LawSlope law = engine::largest_slope(state.dissipation, damper);
     slope.viscosity += law.value;
     slope.bounded = slope.bounded && law.bounded;
+  }
+  if (slope.uncertainty == nullptr && drives_apart(state, rest_length, turns, reach)) {
+    slope.uncertainty = kDrivesApart;
+  }
+  Interval where{rest_length - stretch.shorter, rest_length + stretch.longer};
+  if (turns) where.low = std::max(where.low, 0.0);
+  if (slope.uncertainty == nullptr && drives_motion(state, where, rest_length, speed, reach)) {
+    slope.uncertainty = kDrivesMotion;
   }
   if (std::isfinite(state.force_limit)) {
     slope.variation = std::max(slope.variation, slope.stiffness);  // it is flat beyond
@@ -244,59 +225,6 @@ bool acts_at(const engine::LinkState& state, double tension) {
          std::abs(tension) < state.force_limit;
 }
 
-/// Kinetic, stored and what falling through the scene brings [J].
-/// The diagonal of the box about all MATs [m].
-double extent_of(const engine::NetworkDescription& network) {
-  engine::Vec3 lowest = network.mats.front().position;
-  engine::Vec3 highest = lowest;
-  for (const engine::Mat& mat : network.mats) {
-    lowest = lowest.cwiseMin(mat.position);
-    highest = highest.cwiseMax(mat.position);
-  }
-  return (highest - lowest).norm();
-}
-
-double energy_brought(const engine::NetworkDescription& network) {
-  double energy = 0.0;
-  double weight = 0.0;
-  for (const engine::Mat& mat : network.mats) {
-    if (mat.kind != engine::MatKind::kMass) continue;
-    energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
-    weight += mat.mass * network.gravity_on(mat).norm();
-  }
-  for (const engine::Link& link : network.links) {
-    const double e = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
-    energy += 0.5 * link.stiffness * e * e;
-  }
-  for (const engine::StateLink& link : network.state_links) {
-    const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
-    energy += stored_in(state_machine, start_point(network, link));
-  }
-  for (const engine::MaxwellLink& link : network.maxwell_links) {
-    energy += 0.5 * link.start_force * link.start_force / link.stiffness;
-  }
-  for (const engine::Bend& bend : network.bends) {
-    energy += 0.5 * bend.stiffness * engine::bend_at_start(network, bend).squaredNorm();
-  }
-  return energy + weight * extent_of(network);
-}
-
-/// True if an exit of a state asks where the ends of the link are or what they do, and none for anything
-/// else: its age and its impulse say nothing of that, and other variables may hold it anywhere.
-bool ends_by_its_own_motion(const engine::StateMachine& state_machine, std::size_t state) {
-  if (asks_for_variable(state_machine)) return false;
-  const auto first = state_machine.exits.begin() + state_machine.states[state].first_exit;
-  const auto last = state_machine.exits.begin() + state_machine.states[state].last_exit;
-  return std::any_of(first, last, [](const engine::Transition& exit) {
-    return std::ranges::any_of(exit.when.code, [](const engine::Instruction& each) {
-      return each.operation == engine::Operation::kQuantity &&
-             each.quantity != engine::Quantity::kAge &&
-             each.quantity != engine::Quantity::kImpulse &&
-             each.quantity != engine::Quantity::kSlid;
-    });
-  });
-}
-
 }  // namespace
 
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
@@ -312,7 +240,8 @@ double stored_in(const engine::StateMachine& state_machine, const engine::LawPoi
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double e = point.elongation;
   const double tension = elastic_tension(state.elasticity, point);
-  if (!acts_at(state, state.stiffness * e + tension)) return 0.0;
+  const double both = state.stiffness * e + tension;
+  if ((both > 0.0 && !state.pulls) || (both < 0.0 && !state.pushes)) return 0.0;
   const double in_law =
       stores_energy(state.elasticity) ? potential(state.elasticity, point) : std::abs(tension * e);
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
@@ -364,8 +293,8 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.variation = std::max(largest.variation, slope.variation);
     largest.bounded = largest.bounded && slope.bounded;
     // Such a state holds only where its exits let it: its slope beyond is no uncertainty.
-    const bool may_end =
-        ends_by_its_own_motion(state_machine, s) && slope.uncertainty == kPullsWhereEndsMeet;
+    const bool may_end = slope.uncertainty == kPullsWhereEndsMeet &&
+                         may_end_where_ends_meet(state_machine, s, rest_length, reach);
     if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }
   return largest;
@@ -435,8 +364,8 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
   return slope;
 }
 
-Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine::LawPoint& point,
-                         double step) {
+Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
+  const engine::LinkState& state = state_machine.states[state_machine.start];
   const double elongation = point.elongation;
   const double scale = std::max(std::abs(point.distance), 1e-6);
   const auto rise = [scale](const auto& tension, double argument) {  // of a kink, the flatter side
@@ -447,81 +376,42 @@ Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine
     }
     return flattest;
   };
-  Tangent stiffest;
-  double largest = -kNoLimit;
-  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
-    const engine::LinkState& state = state_machine.states[s];
-    const auto elastic = [&](double e) {
-      engine::LawPoint stretched = point;
-      stretched.distance += e - elongation;
-      stretched.elongation = e;
-      return elastic_tension(state.elasticity, stretched);
-    };
-    const auto viscous = [&](double speed) {
-      engine::LawPoint moving = point;
-      moving.speed = speed;
-      return viscous_tension(state.dissipation, moving) + elastic_tension(state.elasticity, moving);
-    };
-    // Nothing is known of the pose in which another state is entered, nor where a link acts again.
-    const double tension = state.stiffness * elongation + elastic(elongation);
-    const bool acts = s == state_machine.start && acts_at(state, tension);
-    const bool bends = acts && !is_root(state.elasticity);
-    const double stiffness = state.stiffness + (bends ? rise(elastic, elongation) : 0.0);
-    const double viscosity =
-        state.viscosity + (bends && !is_root(state.dissipation) ? rise(viscous, 0.0) : 0.0);
-    const double number = step * step * stiffness + 2.0 * step * viscosity;
-    if (number <= largest) continue;
-    largest = number;
-    stiffest.stiffness = stiffness;
-    stiffest.viscosity = viscosity;
-    stiffest.tension = acts ? tension : std::min(state.stiffness * elongation, 0.0);
-    stiffest.acts = acts;
-  }
-  return stiffest;
-}
-
-Reach reach_of(const engine::NetworkDescription& network, double factor) {
-  Reach reach;
-  reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
-  for (const engine::StateLink& link : network.state_links) {
-    const double distance =
-        (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
-    reach.elongation = std::max({reach.elongation, distance, std::abs(link.rest_length)});
-  }
-  for (const engine::SetLiaison& set : network.sets) {
-    reach.elongation = std::max(reach.elongation, set.range);
-  }
-  for (const engine::Mat& mat : network.mats) {
-    if (mat.kind != engine::MatKind::kMass) continue;
-    reach.speed = std::max(reach.speed, mat.velocity.norm());
-    reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
-  }
-  reach.pushed = factor * sum_of_drive_forces(network) * extent_of(network);
-  reach.brought = factor * energy_brought(network) + reach.pushed;
-  reach.energy *= factor;
-  reach.speed *= std::sqrt(factor);
-  return reach;
-}
-
-Reach reach_between(Reach reach, const engine::NetworkDescription& network,
-                    const std::vector<std::uint32_t>& mats_a,
-                    const std::vector<std::uint32_t>& mats_b) {
-  const auto masses = [&](const std::vector<std::uint32_t>& mats) {
-    Interval range{kNoLimit, 0.0};
-    for (const std::uint32_t mat : mats) {
-      const bool is_mass = network.mats[mat].kind == engine::MatKind::kMass;
-      const double mass = is_mass ? network.mats[mat].mass : 0.0;
-      range = {std::min(range.low, mass), std::max(range.high, mass)};
-      reach.held = reach.held || network.mats[mat].kind == engine::MatKind::kPort;
-    }
-    return range;
+  const auto elastic = [&](double e) {
+    engine::LawPoint stretched = point;
+    stretched.distance += e - elongation;
+    stretched.elongation = e;
+    return elastic_tension(state.elasticity, stretched);
   };
-  if (mats_a.size() == 1 && mats_b.size() == 1) {
-    reach.energy = std::max(reach.energy, reach.brought);
+  const auto viscous = [&](double speed) {
+    engine::LawPoint moving = point;
+    moving.speed = speed;
+    return viscous_tension(state.dissipation, moving) + elastic_tension(state.elasticity, moving);
+  };
+  Tangent tangent;
+  tangent.tension = state.stiffness * elongation + elastic(elongation);
+  const bool has_root = is_root(state.elasticity);
+  const double stiffness = state.stiffness + (has_root ? 0.0 : rise(elastic, elongation));
+  // One that only pushes and just touches has a tangent on one side alone.
+  constexpr double kTouching = 1e-6;
+  const double margin = kTouching * std::abs(stiffness * point.distance);
+  tangent.acts = acts_at(state, tangent.tension) && (state.pulls || tangent.tension < -margin) &&
+                 (state.pushes || tangent.tension > margin) &&
+                 std::abs(tangent.tension) < state.force_limit - margin;
+  if (!tangent.acts) {  // it only gives way across, where it is pressed
+    tangent.tension = state.pushes ? std::clamp(tangent.tension, -state.force_limit, 0.0) : 0.0;
+    return tangent;
   }
-  reach.mass_a = masses(mats_a);
-  reach.mass_b = masses(mats_b);
-  return reach;
+  tangent.stiffness = stiffness;
+  const bool bends = !has_root && !is_root(state.dissipation);
+  tangent.viscosity = state.viscosity + (bends ? rise(viscous, 0.0) : 0.0);
+  return tangent;
+}
+
+double pull_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const double tension =
+      state.stiffness * point.elongation + elastic_tension(state.elasticity, point);
+  return state.pulls ? std::clamp(tension, 0.0, state.force_limit) : 0.0;
 }
 
 }  // namespace cordis::plan

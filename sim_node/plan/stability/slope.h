@@ -1,26 +1,10 @@
 // sim_node/plan/stability/slope.h -- how stiff and how viscous a liaison can become.
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include "sim_node/engine/description/network.h"
-#include "sim_node/plan/stability/program_enclosure.h"
+#include "sim_node/engine/description/state_machine.h"
+#include "sim_node/plan/stability/reach.h"
 
 namespace cordis::plan {
-
-/// How far a scene is taken to go where a law has no largest slope of its own.
-struct Reach {
-  double elongation = 0.0;  ///< elongation of a link, either way [m]
-  double speed = 0.0;       ///< elongation rate of a link [m/s]
-  double energy = 0.0;      ///< energy with which two MATs approach each other [J]
-  /// Kinetic and stored at the start, by falling and by `pushed` [J].
-  double brought = 0.0;
-  double pushed = 0.0;   ///< by driven forces through the scene [J]
-  Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
-  Interval mass_b = {};
-  bool held = false;  ///< a port holds an end, so that no energy limits the elongation
-};
 
 /// The largest slopes of a liaison: no tangent of its force is above them, whatever the pose and
 /// the state it is in. Slopes below 0 (a compressed link gives way sideways) never count.
@@ -56,34 +40,21 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
 
-/// What a liaison stores at a point in the state of its start [J], 0 where it does not act; of an
-/// expression, which has no closed form, the product of its tension and elongation.
+/// What a liaison stores at a point in the state of its start [J], 0 where it is let go of. A force limit
+/// is not seen. Of an expression, which has no closed form, the product of its tension and elongation.
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
-/// The tangent of a liaison at one point without speed, in the state that is the stiffest at a step.
-/// Laws count in the state of the start alone.
+/// The tangent of a liaison at one point without speed, in the state of its start.
 struct Tangent {
-  double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]
+  double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]; 0 unless it acts
   double viscosity = 0.0;  ///< likewise [N s/m]
-  double tension = 0.0;    ///< where it acts; else that of its spring if that is pressed, or 0 [N]
-  bool acts = false;       ///< the state is that of the start, neither let go of nor at its limit
+  double tension = 0.0;    ///< where it does not act, only what it pushes with at its limit [N]
+  bool acts = false;       ///< surely: neither let go of, nor about to be, nor at its limit
 };
 
-Tangent stiffest_tangent(const engine::StateMachine& state_machine, const engine::LawPoint& point,
-                         double step);
+Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
-/// What the start of a network says: links as much again as they are, or as their rest lengths; the
-/// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
-/// @param factor  of the energies
-Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
-
-/// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed of
-/// the reach.
-double energy_at(const Reach& reach);
-
-/// The reach of a liaison between one of some MATs and one of others.
-Reach reach_between(Reach reach, const engine::NetworkDescription& network,
-                    const std::vector<std::uint32_t>& mats_a,
-                    const std::vector<std::uint32_t>& mats_b);
+/// What a liaison pulls with at one point without speed, in the state of its start [N]; 0 where it pushes.
+double pull_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
 }  // namespace cordis::plan

@@ -102,25 +102,6 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
   return x;
 }
 
-/// True if a pair surely has its tangent. One that only pushes and just touches has none on one side,
-/// nor has one whose viscosity acts alone.
-bool surely_acts(const engine::LinkState& state, const Tangent& tangent, double distance) {
-  constexpr double kTouching = 1e-9;
-  const double rounding = kTouching * std::abs(tangent.stiffness) * distance;
-  if (!state.pulls && tangent.tension >= -rounding) return false;
-  if (!state.pushes && tangent.tension <= rounding) return false;
-  return tangent.acts;
-}
-
-/// The tangent of a pair that is let go of or at its limit: it only gives way across, where it is pressed.
-Tangent pressed_alone(const engine::LinkState& state, const engine::LawPoint& point) {
-  const double tension =
-      state.stiffness * point.elongation + elastic_tension(state.elasticity, point);
-  Tangent tangent;
-  if (state.pushes) tangent.tension = std::clamp(tension, -state.force_limit, 0.0);
-  return tangent;
-}
-
 }  // namespace
 
 StartTangent::StartTangent(const engine::NetworkDescription& network)
@@ -150,8 +131,8 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   }
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
-    const Tangent tangent = stiffest_tangent(network.state_machines[link.state_machine],
-                                             start_point(network, link), network.step);
+    const Tangent tangent =
+        tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
@@ -186,18 +167,14 @@ void StartTangent::add_bend(const engine::NetworkDescription& network, const eng
 
 void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                            double stiffness_weight, double viscosity_weight) {
-  const engine::StateMachine start = start_state_alone(network.state_machines[set.state_machine]);
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
   const StartPairs near(network, set);
   for (const StartPair& pair : near.pairs()) {
     const std::uint32_t a = mat_of(set, pair.member_a);
     const std::uint32_t b = mat_of(set, pair.member_b);
-    const engine::LawPoint point = start_point(network, set, pair);
-    Tangent tangent = stiffest_tangent(start, point, network.step);
-    if (!surely_acts(start.states[0], tangent, std::abs(pair.distance))) {
-      tangent = pressed_alone(start.states[0], point);
-      if (tangent.tension == 0.0) continue;
-    }
+    const Tangent tangent = tangent_at_start(state_machine, start_point(network, set, pair));
+    if (!tangent.acts && tangent.tension == 0.0) continue;
     if (on_surfaces) {
       add_at_surface(*engine::surface_of(network, a), b, network,
                      stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,

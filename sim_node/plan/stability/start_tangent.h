@@ -12,8 +12,8 @@
 namespace cordis::plan {
 
 /// The linear network that a scene is for small movements about the pose of its start: every link
-/// with its tangent there, state links in their stiffest state, every pair of a set in the state of
-/// its start as far as it pulls or pushes; with the weights of its integrator at its step
+/// with its tangent there, state links and every pair of a set in the state of their start as far as
+/// they pull or push there; with the weights of its integrator at its step
 /// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.

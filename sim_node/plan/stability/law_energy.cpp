@@ -1,0 +1,269 @@
+// sim_node/plan/stability/law_energy.cpp
+#include "sim_node/plan/stability/law_energy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <variant>
+#include <vector>
+
+#include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/start_point.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kNothing = 1e-9;  // of a force, beside the largest there is
+
+/// True if a law that is 0 somewhere has its least potential there: it pulls what is longer and pushes
+/// what is shorter, or pushes alone.
+bool never_falls(const engine::Law& law) {
+  if (is_none(law)) return true;
+  if (const auto* power = std::get_if<engine::Power>(&law)) return power->coefficient >= 0.0;
+  if (const auto* rings = std::get_if<engine::Rings>(&law)) {
+    return std::ranges::all_of(rings->rings,
+                               [](const auto& ring) { return ring.stiffness >= 0.0; });
+  }
+  const auto* table = std::get_if<engine::Table>(&law);
+  if (table == nullptr) return false;
+  const auto tension = [&](double elongation) {
+    return elastic_tension(law, {elongation, elongation});
+  };
+  for (const double elongation : table->argument()) {
+    if (tension(elongation) * elongation < 0.0) return false;
+  }
+  return tension(0.0) == 0.0 && tension(table->argument().front()) <= 0.0 &&
+         tension(table->argument().back()) >= 0.0;
+}
+
+/// What a state pulls at a distance at rest, as weakly or as strongly as any masses of the reach have it
+/// [N].
+Interval tension_at(const engine::LinkState& state, double distance, double rest_length,
+                    const Reach& reach) {
+  const double elongation = distance - rest_length;
+  const Interval law = tension_between(state.elasticity, distance, elongation, reach);
+  const auto clamped = [&](double tension) {
+    const double spring = state.stiffness * elongation + tension;
+    return std::clamp(spring, state.pushes ? -state.force_limit : 0.0,
+                      state.pulls ? state.force_limit : 0.0);
+  };
+  return {clamped(law.low), clamped(law.high)};
+}
+
+/// Distances between which a law is summed up, from one on to an end, near each other at first.
+class Way {
+ public:
+  Way(const engine::LinkState& state, double rest_length, const Reach& reach)
+      : state_(state), rest_length_(rest_length), reach_(reach) {
+    if (const auto* table = std::get_if<engine::Table>(&state.elasticity)) {
+      for (const double elongation : table->argument())
+        corners_.push_back(rest_length + elongation);
+    } else if (const auto* rings = std::get_if<engine::Rings>(&state.elasticity)) {
+      for (const auto& ring : rings->rings) corners_.push_back(ring.radius);
+    }
+  }
+
+  /// The most that the potential falls on the way [J].
+  double fall(double from, double to) const {
+    double energy = 0.0;
+    double most = 0.0;
+    double before = from;
+    double outwards_before = outwards(from, to);
+    for (const double distance : places(from, to)) {
+      const double here = outwards(distance, to > from ? kEndless : -kEndless);
+      energy += 0.5 * (outwards_before + here) * std::abs(distance - before);
+      most = std::max(most, energy);
+      before = distance;
+      outwards_before = here;
+    }
+    return most;
+  }
+
+  /// The force at a distance that drives it on towards a side [N].
+  double outwards(double distance, double side) const {
+    const Interval tension = tension_at(state_, distance, rest_length_, reach_);
+    const double force = side > distance ? -tension.low : tension.high;
+    return std::isfinite(force) ? force : 0.0;
+  }
+
+ private:
+  std::vector<double> places(double from, double to) const {
+    constexpr int kEven = 400;
+    std::vector<double> all;
+    for (int i = 1; i <= kEven; ++i) all.push_back(from + (to - from) * i / kEven);
+    const bool approaches = std::abs(to) < std::abs(from);  // laws of the distance are steep near 0
+    for (double share = 0.97; approaches && share > 1e-9; share *= 0.97) {
+      all.push_back(to + (from - to) * share);
+    }
+    for (const double corner : corners_) {
+      if ((corner - from) * (corner - to) < 0.0) all.push_back(corner);
+    }
+    std::ranges::sort(all);
+    if (to < from) std::ranges::reverse(all);
+    return all;
+  }
+
+  const engine::LinkState& state_;
+  double rest_length_;
+  const Reach& reach_;
+  std::vector<double> corners_;
+};
+
+/// How a force goes on without an end.
+struct Tail {
+  bool endless = false;      // its potential falls without an end
+  bool ever_harder = false;  // it grows
+};
+
+/// @param side  1 towards larger distances, else -1
+Tail tail_of(const Way& way, double scale, double side) {
+  constexpr int kPlaces = 16;
+  constexpr double kNear = 1e2;
+  constexpr double kFar = 1e3;
+  double first = 0.0;
+  double last = 0.0;
+  double largest = 0.0;
+  for (int i = 0; i < kPlaces; ++i) {
+    const double away = kNear * scale * std::pow(kFar / kNear, i / (kPlaces - 1.0));
+    last = way.outwards(side * away, side * kEndless);
+    if (i == 0) first = last;
+    if (!(last > 0.0)) return {};
+    largest = std::max(largest, last);
+  }
+  // What falls as the inverse of the distance, or slower, sums up without an end.
+  const bool endless = last * kFar > 0.5 * first * kNear && last > kNothing * largest;
+  return {endless, last > 2.0 * first};
+}
+
+double scale_of(double distance, double rest_length, const engine::LinkState& state) {
+  constexpr double kSmallest = 1e-3;  // [m]
+  double scale = std::max({std::abs(distance), std::abs(rest_length), kSmallest});
+  if (const auto* table = std::get_if<engine::Table>(&state.elasticity)) {
+    for (const double end : {table->argument().front(), table->argument().back()})
+      scale = std::max(scale, std::abs(end));
+  }
+  return scale;
+}
+
+}  // namespace
+
+double fall_of(const engine::LinkState& state, double rest_length, const Span& span,
+               const Reach& reach) {
+  const Way way(state, rest_length, reach);
+  const double scale =
+      scale_of(std::max(std::abs(span.from), std::abs(span.to)), rest_length, state);
+  constexpr double kFollowed = 10.0;  // scales
+  double fall = 0.0;
+  for (const double side : {1.0, -1.0}) {
+    const double start = side > 0.0 ? span.from : span.to;
+    const double limit = side > 0.0 ? span.highest : span.lowest;
+    const double followed = side * kFollowed * scale;
+    const double end = side > 0.0 ? std::min(limit, followed) : std::max(limit, followed);
+    if (!(side * (end - start) > 0.0)) continue;
+    double here = way.fall(start, end);
+    if (std::isinf(limit)) {
+      if (tail_of(way, scale, side).endless) return kEndless;
+      here += std::max(way.outwards(end, side * kEndless), 0.0) * std::abs(end);  // as 1 / d^2
+    }
+    fall += here;
+  }
+  return fall;
+}
+
+double brought_by(const engine::NetworkDescription& network, const engine::StateLink& link) {
+  const engine::StateMachine& state_machine = network.state_machines[link.state_machine];
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const engine::LawPoint start = start_point(network, link);
+  const double stored = stored_in(state_machine, start);
+  if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity)) {
+    return stored + balls->well_depth;
+  }
+  if (never_falls(state.elasticity)) return stored;
+  Reach masses;
+  masses.mass_a = {start.mass_a, start.mass_a};
+  masses.mass_b = {start.mass_b, start.mass_b};
+  const double lowest = network.dimension > 1 ? 0.0 : -kEndless;
+  return fall_of(state, link.rest_length, {start.distance, start.distance, lowest, kEndless},
+                 masses);
+}
+
+double brought_by_pair(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+                       double nearest, double rest_length, const Reach& reach) {
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity)) {
+    return balls->well_depth;
+  }
+  if (never_falls(state.elasticity)) return 0.0;
+  double lowest = network.dimension > 1 ? 0.0 : -set.range;
+  if (engine::acts_on_surfaces(network, set)) lowest = -kEndless;
+  return fall_of(state, rest_length, {std::min(nearest, set.range), set.range, lowest, set.range},
+                 reach);
+}
+
+bool drives_apart(const engine::LinkState& state, double rest_length, bool turns,
+                  const Reach& reach) {
+  if (std::isfinite(reach.range) || never_falls(state.elasticity)) return false;
+  const Way way(state, rest_length, reach);
+  const double scale = scale_of(reach.elongation, rest_length, state);
+  return tail_of(way, scale, 1.0).ever_harder || (!turns && tail_of(way, scale, -1.0).ever_harder);
+}
+
+namespace {
+
+/// Speeds at which a law of the speed is tried, either way.
+std::vector<double> tried_speeds(const engine::LinkState& state, double speed) {
+  constexpr int kEven = 64;
+  constexpr int kHalvings = 40;
+  std::vector<double> all;
+  for (int i = 1; i <= kEven; ++i) all.push_back(speed * i / kEven);
+  double share = 1.0;
+  for (int i = 0; i < kHalvings; ++i) all.push_back(speed * (share *= 0.5));
+  if (const auto* table = std::get_if<engine::Table>(&state.dissipation)) {
+    for (const double corner : table->argument()) {
+      if (corner != 0.0 && std::abs(corner) <= speed) all.push_back(std::abs(corner));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+bool drives_motion(const engine::LinkState& state, const Interval& distance, double rest_length,
+                   double speed, const Reach& reach) {
+  const auto* elastic = std::get_if<engine::Expression>(&state.elasticity);
+  const bool asks = elastic != nullptr && !elastic->is_potential();
+  const auto* power = std::get_if<engine::Power>(&state.dissipation);
+  const bool never = is_none(state.dissipation) || (power != nullptr && power->coefficient >= 0.0);
+  if (never && !asks) return false;
+  const bool is_table = std::holds_alternative<engine::Table>(state.dissipation) ||
+                        std::holds_alternative<engine::Power>(state.dissipation);
+  const int places = asks || !is_table ? 17 : 1;
+  const std::vector<double> speeds = tried_speeds(state, speed);
+  for (int i = 0; i < places; ++i) {
+    const double share = places > 1 ? i / (places - 1.0) : 0.0;
+    const double apart = distance.low + (distance.high - distance.low) * share;
+    for (const double mass_a : {reach.mass_a.low, reach.mass_a.high}) {
+      for (const double mass_b : {reach.mass_b.low, reach.mass_b.high}) {
+        engine::LawPoint point{apart, apart - rest_length, 0.0, mass_a, mass_b};
+        const double at_rest = elastic_tension(state.elasticity, point);
+        for (const double each : speeds) {
+          for (const double v : {each, -each}) {
+            point.speed = v;
+            const double spring = asks ? elastic_tension(state.elasticity, point) - at_rest : 0.0;
+            const double tension =
+                state.viscosity * v + viscous_tension(state.dissipation, point) + spring;
+            const double size = state.viscosity * each + std::abs(tension) + std::abs(at_rest);
+            if (tension * v < -kNothing * size * each) return true;
+          }
+        }
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace cordis::plan

@@ -1,0 +1,200 @@
+// sim_node/plan/stability/reach.cpp
+#include "sim_node/plan/stability/reach.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim_node/engine/links/bend_shape.h"
+#include "sim_node/plan/stability/drive_extremes.h"
+#include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/start_point.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr double kMinSpeed = 1.0;  // [m/s]
+
+/// The diagonal of the box about all MATs [m].
+double extent_of(const engine::NetworkDescription& network) {
+  engine::Vec3 lowest = network.mats.front().position;
+  engine::Vec3 highest = lowest;
+  for (const engine::Mat& mat : network.mats) {
+    lowest = lowest.cwiseMin(mat.position);
+    highest = highest.cwiseMax(mat.position);
+  }
+  return (highest - lowest).norm();
+}
+
+double weight_of(const engine::NetworkDescription& network) {
+  double weight = 0.0;
+  for (const engine::Mat& mat : network.mats) {
+    if (mat.kind == engine::MatKind::kMass) weight += mat.mass * network.gravity_on(mat).norm();
+  }
+  return weight;
+}
+
+/// True if a link has a law that the energy of the scene may have to bound.
+bool needs_energy(const engine::NetworkDescription& network) {
+  return std::ranges::any_of(network.state_links, [&](const engine::StateLink& link) {
+    return std::ranges::any_of(network.state_machines[link.state_machine].states,
+                               [](const engine::LinkState& state) {
+                                 const auto is_free = [](const engine::Law& law) {
+                                   return std::holds_alternative<engine::Power>(law) ||
+                                          std::holds_alternative<engine::Expression>(law) ||
+                                          std::holds_alternative<engine::LennardJones>(law);
+                                 };
+                                 return is_free(state.elasticity) || is_free(state.dissipation);
+                               });
+  });
+}
+
+/// Stored by the pairs of a set at the start, and what each of its members can gain in one pair.
+double brought_by_set(const engine::NetworkDescription& network, const engine::SetLiaison& set) {
+  const StartPairs near(network, set);
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  double energy = 0.0;
+  double nearest = set.range;
+  double rest = std::max(set.rest_length, 0.0);
+  for (const StartPair& pair : near.pairs()) {
+    const engine::LawPoint point = start_point(network, set, pair);
+    energy += stored_in(state_machine, point);
+    nearest = std::min(nearest, pair.distance);
+    rest = point.distance - point.elongation;
+  }
+  const Reach of_masses =
+      reach_between({}, network, set.set_p, set.set_q.empty() ? set.set_p : set.set_q);
+  const double fall = brought_by_pair(network, set, nearest, rest, of_masses);
+  if (!std::isfinite(fall)) return energy;
+  return energy + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+}
+
+/// Kinetic, stored and what falling through the scene brings, of all but links with states [J].
+double energy_brought(const engine::NetworkDescription& network) {
+  double energy = 0.0;
+  for (const engine::Mat& mat : network.mats) {
+    if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
+  }
+  for (const engine::Link& link : network.links) {
+    const double e = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
+    energy += 0.5 * link.stiffness * e * e;
+  }
+  for (const engine::MaxwellLink& link : network.maxwell_links) {
+    energy += 0.5 * link.start_force * link.start_force / link.stiffness;
+  }
+  for (const engine::Bend& bend : network.bends) {
+    energy += 0.5 * bend.stiffness * engine::bend_at_start(network, bend).squaredNorm();
+  }
+  if (needs_energy(network)) {
+    for (const engine::SetLiaison& set : network.sets) energy += brought_by_set(network, set);
+  }
+  return energy + weight_of(network) * extent_of(network);
+}
+
+/// The speed at which a state holds a force that lasts, by its viscosity [m/s].
+double terminal_speed(const engine::LinkState& state, double force) {
+  if (force <= 0.0) return 0.0;
+  constexpr double kSlowest = 1e-6;  // [m/s]
+  constexpr double kFastest = 1e9;
+  double speed = kSlowest;
+  for (; speed < kFastest; speed *= 2.0) {
+    engine::LawPoint point;
+    const auto holds = [&](double v) {
+      point.speed = v;
+      return std::abs(state.viscosity * v + viscous_tension(state.dissipation, point));
+    };
+    if (std::min(holds(speed), holds(-speed)) >= force) break;
+  }
+  return speed;
+}
+
+}  // namespace
+
+double energy_at(const Reach& reach) {
+  const double inverse = (reach.mass_a.high > 0.0 ? 1.0 / reach.mass_a.high : 0.0) +
+                         (reach.mass_b.high > 0.0 ? 1.0 / reach.mass_b.high : 0.0);
+  const double meeting = inverse > 0.0 ? 2.0 * reach.speed * reach.speed / inverse : 0.0;
+  constexpr double kSpare = 1.01;  // for the sum over the tension
+  return kSpare * (reach.brought + meeting);
+}
+
+double relative_speed(const engine::LinkState& state, const Reach& reach) {
+  const double with_energy = std::sqrt(2.0 * energy_at(reach) * reach.inverse_mass);
+  const double with_port = reach.held ? with_energy + reach.speed : with_energy;
+  const double driven = is_none(state.dissipation) ? 0.0 : terminal_speed(state, reach.force);
+  return std::max(with_port, reach.speed) + driven;
+}
+
+Interval tension_between(const engine::Law& law, double distance, double elongation,
+                         const Reach& reach) {
+  Interval all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const double mass_a : {reach.mass_a.low, reach.mass_a.high}) {
+    for (const double mass_b : {reach.mass_b.low, reach.mass_b.high}) {
+      const double tension = elastic_tension(law, {distance, elongation, 0.0, mass_a, mass_b});
+      all = {std::min(all.low, tension), std::max(all.high, tension)};
+    }
+  }
+  return all;
+}
+
+Reach reach_of(const engine::NetworkDescription& network, double factor) {
+  Reach reach;
+  reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
+  double energy = energy_brought(network);
+  std::uint32_t index = 0;
+  for (const engine::StateLink& link : network.state_links) {
+    const double distance =
+        (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
+    reach.elongation = std::max({reach.elongation, distance, std::abs(link.rest_length)});
+    const double brought = brought_by(network, link);
+    if (std::isfinite(brought)) {
+      energy += brought;
+    } else if (!reach.endless) {
+      reach.endless = index;
+    }
+    ++index;
+  }
+  for (const engine::SetLiaison& set : network.sets) {
+    reach.elongation = std::max(reach.elongation, set.range);
+  }
+  for (const engine::Mat& mat : network.mats) {
+    if (mat.kind != engine::MatKind::kMass) continue;
+    reach.speed = std::max(reach.speed, mat.velocity.norm());
+    reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
+  }
+  const double driven = sum_of_drive_forces(network);
+  reach.pushed = factor * driven * extent_of(network);
+  reach.force = driven + weight_of(network);
+  reach.brought = factor * energy + reach.pushed;
+  reach.energy *= factor;
+  reach.speed *= std::sqrt(factor);
+  return reach;
+}
+
+Reach reach_between(Reach reach, const engine::NetworkDescription& network,
+                    const std::vector<std::uint32_t>& mats_a,
+                    const std::vector<std::uint32_t>& mats_b) {
+  reach.inverse_mass = 0.0;
+  const auto masses = [&](const std::vector<std::uint32_t>& mats) {
+    Interval range{std::numeric_limits<double>::infinity(), 0.0};
+    double most = 0.0;  // of 1 / m
+    for (const std::uint32_t mat : mats) {
+      const bool is_mass = network.mats[mat].kind == engine::MatKind::kMass;
+      const double mass = is_mass ? network.mats[mat].mass : 0.0;
+      range = {std::min(range.low, mass), std::max(range.high, mass)};
+      if (is_mass) most = std::max(most, 1.0 / mass);
+      reach.held = reach.held || network.mats[mat].kind == engine::MatKind::kPort;
+    }
+    reach.inverse_mass += most;
+    return range;
+  };
+  if (mats_a.size() == 1 && mats_b.size() == 1) {
+    reach.energy = std::max(reach.energy, reach.brought);
+  }
+  reach.mass_a = masses(mats_a);
+  reach.mass_b = masses(mats_b);
+  return reach;
+}
+
+}  // namespace cordis::plan

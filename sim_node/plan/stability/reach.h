@@ -1,0 +1,57 @@
+// sim_node/plan/stability/reach.h -- how far a scene may go, for laws without a largest slope.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "sim_node/engine/description/network.h"
+#include "sim_node/plan/stability/program_enclosure.h"
+
+namespace cordis::plan {
+
+/// What bounds a law that has no largest slope.
+struct Reach {
+  double elongation = 0.0;  ///< elongation of a link, either way [m]
+  double speed = 0.0;       ///< speed of MATs [m/s]
+  double energy = 0.0;      ///< energy with which two MATs approach each other [J]
+  /// Kinetic and stored at the start, by falling, by laws whose potential falls, and by `pushed` [J].
+  double brought = 0.0;
+  double pushed = 0.0;   ///< by driven forces through the scene [J]
+  Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
+  Interval mass_b = {};
+  bool held = false;          ///< a port holds an end, so that no energy limits the elongation
+  double force = 0.0;         ///< force of all drives and all weights [N]
+  double inverse_mass = 0.0;  ///< the largest 1 / m of each end, added up [1/kg]
+  /// The distance from which on the liaison does nothing [m].
+  double range = std::numeric_limits<double>::infinity();
+  /// The first link with states whose potential falls without an end; what it brings in is not in
+  /// `brought`.
+  std::optional<std::uint32_t> endless = {};
+};
+
+/// What the start of a network says: links as much again as they are, or as their rest lengths; the
+/// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
+/// @param factor  of the energies
+Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
+
+/// The reach of a liaison between one of some MATs and one of others.
+Reach reach_between(Reach reach, const engine::NetworkDescription& network,
+                    const std::vector<std::uint32_t>& mats_a,
+                    const std::vector<std::uint32_t>& mats_b);
+
+/// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed of
+/// the reach.
+double energy_at(const Reach& reach);
+
+/// The fastest that the ends of a liaison can part or meet in a state [m/s]: with all the energy there
+/// is, beside a port, and as far as forces that last drive them against its viscosity.
+double relative_speed(const engine::LinkState& state, const Reach& reach);
+
+/// The least and the most that an elasticity pulls at a distance, between any two of the masses of the
+/// reach [N]: the masses stand at their ends.
+Interval tension_between(const engine::Law& law, double distance, double elongation,
+                         const Reach& reach);
+
+}  // namespace cordis::plan

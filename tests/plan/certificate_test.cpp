@@ -1,0 +1,272 @@
+// tests/plan/certificate_test.cpp -- what is not certified, and what is not surely unstable.
+#include <cmath>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/liaison_graph.h"
+#include "tests/engine/programs.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr double kMass = 0.001;  // [kg]
+
+/// A mass away from a fixed point.
+NetworkDescription mass_at(const Vec3& place, int dimension, double rate_hz) {
+  NetworkDescription scene;
+  scene.dimension = dimension;
+  scene.step = 1.0 / rate_hz;
+  scene.mats = {fixed(Vec3::Zero()), mass(kMass, place)};
+  return scene;
+}
+
+void join(NetworkDescription& scene, engine::StateMachine law, double rest_length) {
+  scene.state_links.push_back(
+      {0, 1, static_cast<std::uint32_t>(scene.state_machines.size()), rest_length});
+  scene.state_machines.push_back(std::move(law));
+}
+
+engine::StateMachine viscous(engine::Law law) {
+  engine::StateMachine machine = state_machine(0.0);
+  machine.states[0].dissipation = std::move(law);
+  return machine;
+}
+
+engine::StateMachine with_exit(engine::StateMachine machine, const Term& when) {
+  machine.states.emplace_back();
+  machine.states[0].last_exit = 1;
+  machine.exits.emplace_back();
+  machine.exits[0].target = 1;
+  machine.exits[0].when = when.program;
+  return machine;
+}
+
+plan::Stability stability_at_start(const NetworkDescription& scene) {
+  return plan::plan_of(scene, 10.0).stability;
+}
+
+const Term kE = q(Quantity::kElongation);  // NOLINT(cert-err58-cpp): the test would not start
+const Term kV = q(Quantity::kSpeed);       // NOLINT(cert-err58-cpp)
+
+/// A spring stretched by 0.2 m: 200 m/s for 1 g.
+NetworkDescription stretched(int dimension) {
+  NetworkDescription scene = mass_at(Vec3(0.3, 0, 0), dimension, 44100.0);
+  scene.links = {{0, 1, 2000.0, 0.0, 0.1}};
+  return scene;
+}
+
+TEST(Certificate, JudgesAViscosityAtTheSpeedThatStoredEnergyGives) {
+  for (const auto& [coefficient, exponent] : {std::pair(12.0, 3.0), std::pair(20.0, 2.0)}) {
+    for (const int dimension : {1, 2}) {
+      NetworkDescription scene = stretched(dimension);
+      join(scene, viscous(engine::Power{coefficient, exponent}), 0.0);
+      EXPECT_FALSE(stability_at_start(scene).holds()) << exponent;
+      EXPECT_FALSE(stability_at_start(scene).diverges()) << exponent;
+    }
+  }
+}
+
+TEST(Certificate, JudgesAPowerOfTheSpeedAsTheSameExpression) {
+  NetworkDescription power = stretched(1);
+  NetworkDescription expression = power;
+  join(power, viscous(engine::Power{0.5, 3.0}), 0.1);
+  join(expression, viscous(expression_law(0.5 * kV * kV * kV)), 0.1);
+
+  const double of_power = stability_at_start(power).certified.step;
+  EXPECT_NEAR(stability_at_start(expression).certified.step, of_power, 0.02 * of_power);
+  power.step = expression.step = 0.9 * of_power;
+  EXPECT_TRUE(stability_at_start(power).holds());
+  EXPECT_TRUE(stability_at_start(expression).holds());
+}
+
+TEST(Certificate, HoldsAtItsStepWithAViscosityThatGrowsWithTheSpeed) {
+  for (const auto integrator : {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog,
+                                engine::IntegratorKind::kImplicit}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+    scene.integrator = integrator;
+    scene.links = {{0, 1, 1000.0, 0.0, 0.0}};
+    join(scene, viscous(engine::Power{0.5, 3.0}), 0.0);
+    scene.step = 0.98 * stability_at_start(scene).certified.step;
+    EXPECT_LE(largest_excursion(scene, 20000), 0.11);
+  }
+}
+
+TEST(Certificate, JudgesAViscosityAtTheSpeedThatADriveOrAWeightHoldsAgainstIt) {
+  NetworkDescription pushed = mass_at(Vec3::Zero(), 1, 15.3);
+  join(pushed, viscous(engine::Power{0.01, 3.0}), 0.0);
+  NetworkDescription heavy = pushed;
+  heavy.gravity = Vec3(-1e5, 0, 0);  // 100 N, as the drive
+  engine::TimeFunction function;
+  function.formula[0] = Term(100.0).program;
+  pushed.time_functions.push_back(function);
+  engine::Drive drive;
+  drive.mat = 1;
+  drive.is_force = true;
+  pushed.drives = {drive};
+  // 0.01 v^3 = 100 N at 21.5 m/s, where the slope is 13.9 N s/m: 2 Z' = 4 at 144 us.
+  for (const NetworkDescription& scene : {pushed, heavy}) {
+    EXPECT_FALSE(stability_at_start(scene).holds());
+    EXPECT_LT(stability_at_start(scene).certified.step, 1.44e-4);
+    EXPECT_GT(stability_at_start(scene).certified.step, 1e-5);
+  }
+}
+
+TEST(Certificate, JudgesTheViscosityOfAContactAtTheSpeedOfAFall) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1.0 / 375.0;
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.mats = {fixed(Vec3::Zero()), mass(kMass, Vec3(0, 10, 0))};
+  engine::StateMachine law = contact(100.0);
+  law.states[0].dissipation = engine::Power{0.2, 3.0};
+  scene.state_machines.push_back(law);
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = set.rest_length = 0.01;
+  scene.sets.push_back(set);
+  const plan::Stability stability = stability_at_start(scene);
+  EXPECT_FALSE(stability.holds());
+  // 14 m/s: 3 * 0.2 * 196 = 118 N s/m, 2 Z' = 4 at 17 us.
+  EXPECT_LT(stability.certified.step, 1.7e-5);
+}
+
+TEST(Certificate, IsNotSureThatModesDivergeBySpeedsOfALaterTime) {
+  NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 2700.0);
+  scene.integrator = engine::IntegratorKind::kModal;
+  scene.links = {{0, 1, 1000.0, 0.0, 0.0}};
+  join(scene, viscous(engine::Power{0.5, 3.0}), 0.0);
+  EXPECT_FALSE(stability_at_start(scene).holds());
+  EXPECT_FALSE(stability_at_start(scene).diverges());
+}
+
+TEST(Certificate, IsNotGivenToLawsThatDrive) {
+  engine::StateMachine with_spring = viscous(expression_law(-0.03 * kV));
+  with_spring.states[0].stiffness = 100.0;
+  engine::StateMachine of_table = with_spring;
+  of_table.states[0].dissipation = engine::Table({-100.0, 0.0, 100.0}, {3.0, 0.0, -3.0});
+  const engine::StateMachine constant = viscous(engine::Table({-1.0, 0.0}, {60.0, 60.0}));
+  const engine::StateMachine power = viscous(engine::Power{-0.5, 3.0});
+  const engine::StateMachine elastic = state_machine(0.0, expression_law(100.0 * kE - 0.5 * kV));
+  const engine::StateMachine apart = state_machine(0.0, expression_law(-20.0 * kE));
+  for (const auto& law : {with_spring, of_table, constant, power, elastic, apart}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+    scene.links = {{0, 1, 10.0, 0.0, 0.0}};
+    join(scene, law, 0.0);
+    EXPECT_TRUE(stability_at_start(scene).uncertainty.has_value());
+    EXPECT_FALSE(stability_at_start(scene).diverges());
+  }
+}
+
+TEST(Certificate, IsGivenToLawsThatItsOwnSpringOrViscosityHolds) {
+  engine::StateMachine held = state_machine(100.0, expression_law(-20.0 * kE));
+  engine::StateMachine damped = viscous(expression_law(-0.03 * kV));
+  damped.states[0].viscosity = 0.05;
+  engine::StateMachine falls_while_it_slides =
+      viscous(engine::Table({-1.0, -0.01, 0.01, 1.0}, {-0.1, -0.3, 0.3, 0.1}));
+  for (const auto& law : {held, damped, falls_while_it_slides}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 44100.0);
+    join(scene, law, 0.0);
+    EXPECT_TRUE(stability_at_start(scene).holds());
+  }
+}
+
+TEST(Certificate, IsNotGivenWhereAPotentialFallsWithoutAnEndBesideALawThatOnlyEnergyConfines) {
+  const engine::StateMachine cubic = state_machine(0.0, engine::Power{3e4, 3.0});
+  for (const engine::Law& law : {engine::Law(engine::Table({-10.0, 10.0}, {100.0, 100.0})),
+                                 expression_law(50.0 - 0.0 * kE)}) {
+    NetworkDescription scene = mass_at(Vec3(0.5, 0, 0), 1, 1000.0);
+    join(scene, state_machine(0.0, law), 0.0);
+    EXPECT_TRUE(stability_at_start(scene).holds()) << "a constant force by itself";
+    join(scene, cubic, 0.5);
+    EXPECT_TRUE(stability_at_start(scene).uncertainty.has_value());
+  }
+}
+
+TEST(Certificate, CountsByHowMuchAPotentialFalls) {
+  // From its start at 0.5 m the table drives the mass out with 100 N up to 1 m: 50 J, and 25 J on to 2 m.
+  const engine::Table well({0.0, 1.0, 1.5, 2.0}, {-100.0, -100.0, 0.0, 0.0});
+  NetworkDescription scene = mass_at(Vec3(0.5, 0, 0), 1, 1000.0);
+  join(scene, state_machine(0.0, well), 0.0);
+  EXPECT_FALSE(stability_at_start(scene).uncertainty.has_value());
+  join(scene, state_machine(0.0, engine::Power{3e4, 3.0}), 0.5);
+  const double limit = stability_at_start(scene).certified.step;
+  // 7500 e^4 = 75 J: 9e4 e^2 = 9000 N/m, and 200 N/m of the well.
+  EXPECT_LT(limit, 2.0 * std::sqrt(kMass / 9000.0));
+}
+
+TEST(Certificate, OfAChoiceOfTheRateIsNotGivenEither) {
+  NetworkDescription scene = mass_at(Vec3(1, 0, 0), 1, 200.0);
+  join(scene, state_machine(0.0, engine::Table({-10.0, 10.0}, {100.0, 100.0})), 0.0);
+  join(scene, state_machine(0.0, engine::Power{3e3, 3.0}), 0.0);
+  EXPECT_TRUE(plan::uncertainty_of(scene, plan::liaison_graph(scene)).has_value());
+}
+
+TEST(Certificate, CountsWhatPullsAcrossInASet) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 5e-4;
+  scene.mats = {mass(kMass, Vec3::Zero()), mass(kMass, Vec3(0.03, 0.001, 0))};
+  // It ends where the ends are near, so that it may pull up to there.
+  scene.state_machines.push_back(
+      with_exit(state_machine(0.0, engine::Table({-1.0, 1.0}, {5.0, 5.0})), kE < 0.01));
+  engine::SetLiaison set;
+  set.set_p = {0, 1};
+  set.range = 0.1;
+  scene.sets.push_back(set);
+  const plan::Stability stability = stability_at_start(scene);
+  EXPECT_LE(stability.certified.step, stability.diverging_step * (1.0 + 1e-9));
+  const bool crosses = stability.uncertainty && stability.uncertainty->why == plan::kLimitsCross;
+  EXPECT_FALSE(crosses);
+}
+
+TEST(Certificate, TakesAnExitForTheEndOfAPullOnlyWhereItsEndsMeet) {
+  const auto is_uncertain = [](const Term& when, double tension) {
+    NetworkDescription scene = mass_at(Vec3(0.05, 0.0003, 0), 2, 1000.0);
+    join(scene,
+         with_exit(state_machine(0.0, engine::Table({-10.0, 10.0}, {tension, tension})), when),
+         0.0);
+    return stability_at_start(scene).uncertainty.has_value();
+  };
+  const Term age = q(Quantity::kAge);
+  const Term force = q(Quantity::kForce);
+  const Term d = q(Quantity::kDistance);
+  EXPECT_TRUE(is_uncertain(kE > 100.0, 0.01));
+  EXPECT_TRUE(is_uncertain(two(Operation::kAnd, age > 5.0, d < 0.02), 0.01));
+  EXPECT_TRUE(is_uncertain(two(Operation::kAnd, age < 5.0, d < 0.02), 0.01));
+  EXPECT_TRUE(is_uncertain(force > 0.02, 0.01)) << "it never pulls that much";
+  EXPECT_FALSE(is_uncertain(d < 0.02, 0.01));
+  EXPECT_FALSE(is_uncertain(two(Operation::kOr, age > 5.0, d < 0.02), 0.01));
+  EXPECT_FALSE(is_uncertain(force > 0.005, 0.01));
+  EXPECT_FALSE(is_uncertain(kV < -0.1, 0.01));
+}
+
+TEST(Certificate, CallsNothingSurelyUnstableThatDoesNotActAtTheStart) {
+  NetworkDescription apart = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+  join(apart, contact(1e6), -5.0);
+  NetworkDescription not_entered = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+  engine::StateMachine soft = with_exit(state_machine(100.0), kE > 10.0);
+  soft.states[1].stiffness = 1e6;
+  join(not_entered, soft, 0.0);
+  NetworkDescription balls;
+  balls.dimension = 2;
+  balls.step = 1e-3;
+  balls.mats = {mass(kMass, Vec3::Zero()), mass(kMass, Vec3(1000, 0, 0))};
+  balls.state_machines.push_back(contact(1e6));
+  engine::SetLiaison set;
+  set.set_p = {0, 1};
+  set.rest_length = set.range = 0.02;
+  balls.sets.push_back(set);
+  for (const NetworkDescription& scene : {apart, not_entered, balls}) {
+    EXPECT_FALSE(stability_at_start(scene).diverges());
+    EXPECT_FALSE(stability_at_start(scene).holds());
+  }
+  apart.state_links[0].rest_length = 0.2;  // pressed
+  EXPECT_TRUE(stability_at_start(apart).diverges());
+}
+
+}  // namespace
+}  // namespace cordis::test
