@@ -129,11 +129,13 @@ void SceneLoop::take_steps(LoadedScene& loaded) noexcept {
 /// @param is_frame  a frame is due: then the energy is found, in real time by the status thread
 void SceneLoop::watch_bounds(bool is_frame) {
   LoadedScene& loaded = runner_.loaded_scene();
-  if (!loaded.watches_energy() || is_forced_) return;
+  const engine::World& world = simulation().world();
   const bool is_realtime = clock_ == config::Clock::kRealtime;
   const BoundSigns signs = is_realtime ? status_.signs_of(*loaded.shadow)
-                           : is_frame  ? signs_of(simulation().world(), loaded.reach)
+                           : is_frame  ? signs_of(world, loaded.energy.update(world), loaded.reach)
                                        : BoundSigns{};
+  if (!signs.has_energy) simulation().fail();
+  if (!loaded.watches_energy() || is_forced_) return;
   const PassedBound bound = loaded.passed_bound(signs);
   if (bound == PassedBound::kNone || simulation().passed_bound() != PassedBound::kNone) return;
   simulation().let_devices_go(bound);

@@ -53,8 +53,11 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
   }
   figures_.partners = partners;
   record_reach(loaded);
-  record_let_go(simulation, let_go);
-  if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world());
+  // A scene without devices says so too; of its partners, figures_.crowding does.
+  const PassedBound bound = simulation.passed_bound();
+  record_let_go(simulation, let_go || (!simulation.has_devices() && bound != PassedBound::kNone &&
+                                       bound != PassedBound::kPartners));
+  if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world(), loaded.energy);
   figures_.is_looping = is_looping_;
   const bool had_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
   figures_.troubles = simulation.troubles();
@@ -107,6 +110,7 @@ void StatusSnapshot::read_shadow() {
   const std::optional<WorldFigures> figures = shadow->read(kCopyPatience);
   if (figures && figures->signs.makes_energy) makes_energy_ = shadow->id();
   if (figures && figures->signs.is_beyond_reach) is_beyond_reach_ = shadow->id();
+  if (figures && !figures->signs.has_energy) has_no_energy_ = shadow->id();
   const std::lock_guard lock(mutex_);
   if (figures && figures_.is_looping) figures_.of_world = *figures;
 }

@@ -36,7 +36,8 @@ class StatusSnapshot {
   void record(Runner& runner, const PartnersSeen& partners, std::uint64_t dropped);
   /// Loop in real time: what the status thread has ever seen of this world.
   BoundSigns signs_of(const ShadowWorld& world) const noexcept {
-    return {makes_energy_.load() == world.id(), is_beyond_reach_.load() == world.id()};
+    return {makes_energy_.load() == world.id(), is_beyond_reach_.load() == world.id(),
+            has_no_energy_.load() != world.id()};
   }
   /// Loop, at its end: why the scene diverged.
   void record_failure(std::string failure);
@@ -91,7 +92,8 @@ class StatusSnapshot {
   std::atomic<std::uint64_t> passivity_ticks_{0};
   std::atomic<double> target_rate_hz_{0.0};
   std::atomic<std::uint64_t> makes_energy_{0};     // id of that world
-  std::atomic<std::uint64_t> is_beyond_reach_{0};  // likewise
+  std::atomic<std::uint64_t> is_beyond_reach_{0};  // likewise, as the next
+  std::atomic<std::uint64_t> has_no_energy_{0};
 };
 
 }  // namespace cordis::sim

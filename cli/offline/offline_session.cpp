@@ -265,8 +265,10 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
   simulation().read_signals(row_.data());
   sim::BoundSigns signs;
   if (simulation().tick_count() % loaded_->ticks_per_frame == 0) {
-    const engine::Energy energy = world().energy();
+    const engine::Energy energy = loaded_->energy.update(world());
     watch_integration_error(energy);
+    if (!std::isfinite(energy.total())) simulation().fail();
+    if (simulation().failed()) return false;
     if (loaded_->watches_energy()) signs = sim::signs_of(world(), energy, loaded_->reach);
   }
   const sim::PassedBound bound = loaded_->passed_bound(signs);
@@ -320,6 +322,10 @@ void OfflineSession::watch_integration_error(const engine::Energy& energy) {
   if (!integration_error_text_.empty() || !sim::is_error_large(energy)) return;
   integration_error_text_ =
       fmt::format("at {:.6g} s {}", time_s(), sim::integration_error_text(energy));
+}
+
+engine::Energy OfflineSession::energy() const {
+  return loaded_->energy.read(world());
 }
 
 double OfflineSession::energy_residual() const {

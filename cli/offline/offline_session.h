@@ -92,6 +92,8 @@ class OfflineSession {
   /// its time; empty if none.
   const std::string& integration_error_text() const noexcept { return integration_error_text_; }
 
+  /// The energy now; Energy::largest is that of all frames.
+  engine::Energy energy() const;
   /// What the energy account does not explain, relative to the largest of its entries.
   double energy_residual() const;
 

@@ -117,7 +117,7 @@ class Recording {
 
   void write_summary(const SimulateResult& result) {
     const scene::Scene& scene = session_.scene();
-    const engine::Energy energy = session_.world().energy();
+    const engine::Energy energy = session_.energy();
     Json columns = Json::object();
     for (std::size_t i = 1; i < summaries_.size(); ++i) {
       const ColumnSummary& column = summaries_[i];

@@ -1,6 +1,7 @@
 // sim_node/checks/stability_check.cpp
 #include "sim_node/checks/stability_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -13,6 +14,27 @@
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
+namespace {
+
+/// A liaison whose law grows ever steeper, at the MAT if there is one there.
+std::optional<plan::LiaisonId> liaison_without_largest_slope(const plan::LiaisonGraph& graph,
+                                                             std::uint32_t mat) {
+  std::optional<plan::LiaisonId> found;
+  for (const plan::Edge& edge : graph.edges) {
+    if (edge.bounded) continue;
+    if (edge.mat_a == mat || edge.mat_b == mat) return edge.liaison;
+    if (!found) found = edge.liaison;
+  }
+  for (const plan::ContactBound& crowd : graph.crowds) {
+    const bool is_at_mat =
+        std::find(crowd.members.begin(), crowd.members.end(), mat) != crowd.members.end();
+    if (!crowd.bounded && (is_at_mat || !found))
+      found = plan::LiaisonId{plan::LiaisonKind::kSet, crowd.set};
+  }
+  return found;
+}
+
+}  // namespace
 
 void check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
   check_stability(scene, plan::stability_of(scene.network, plan::liaison_graph(scene.network)),
@@ -89,7 +111,13 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
   char numbers[64];
   std::snprintf(numbers, sizeof(numbers), "K' + 2 Z' = %.3g of 4", sum);
   if (sum < 4.0) {
-    return "within its limit (" + std::string(numbers) + "): " + name +
+    const std::optional<plan::LiaisonId> endless = liaison_without_largest_slope(graph, mat);
+    if (endless) {
+      const scene::Called law = scene::call_liaison(scene, *endless);
+      return "beyond what its step was certified for: " + law.name + " (" +
+             scene::place_text(law.place) + ") has no largest slope, and so no limit";
+    }
+    return "not too stiff by its largest slopes (" + std::string(numbers) + "): " + name +
            " pulls the most at it, beyond what its law was taken for, or positions and forces from "
            "outside were too large";
   }

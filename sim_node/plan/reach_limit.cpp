@@ -14,6 +14,8 @@ namespace {
 using engine::NetworkDescription;
 
 bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) {
+  if (network.integrator == engine::IntegratorKind::kModal)
+    return stability_of(network, graph).holds();
   return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
 }
 
@@ -55,7 +57,7 @@ ReachLimit reach_limit(const NetworkDescription& network) {
   constexpr double kStep = 4.0;
   constexpr double kLargest = 1e6;
   LiaisonGraph graph = liaison_graph(network);
-  if (graph.bounded || network.integrator == engine::IntegratorKind::kModal) return {};
+  if (graph.bounded) return {};
   if (!is_certified(network, graph)) return {};
   double factor = 1.0;
   while (factor < kLargest) {

@@ -29,6 +29,11 @@ std::string integration_error_text(const engine::Energy& energy) {
   const double error = energy.integration_error();
   if (!std::isfinite(error) || !std::isfinite(energy.largest))
     return "the energy is no finite number any more: the motion diverges. A higher step rate helps";
+  if (energy.brought_by_takers > 0.5 * std::abs(error))
+    return fmt::format(
+        "viscosity and all else that can only take have brought in {:.3g} J, above 1 % of the "
+        "largest energy ({:.3g} J): the step is too long for a liaison. A higher step rate helps",
+        energy.brought_by_takers, energy.largest);
   return fmt::format(
       "the steps have {} {:.3g} J that no account explains, above 1 % of the largest energy "
       "({:.3g} J): the step is too long for a liaison. A higher step rate helps",

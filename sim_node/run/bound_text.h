@@ -10,8 +10,7 @@ namespace cordis::sim {
 /// The message about a scene with LoadedScene::is_beyond_reach.
 inline constexpr const char* kBeyondReach =
     "the scene has more energy, or a faster hand or drive, than its step is certified for: it may "
-    "be "
-    "unstable from here on, and lets go of devices when the steps make more than a tenth of the "
+    "be unstable from here on, and lets go of devices when the steps make more than a tenth of the "
     "energy";
 
 /// Why the devices were let go of. Precondition: a bound is passed.

@@ -32,11 +32,6 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .state_link_count = scene.network.state_links.size()};
 }
 
-/// True if something may bring in more energy than the start has.
-bool is_moved_from_outside(const Simulation& simulation) {
-  return simulation.has_devices() || !simulation.scene().network.drives.empty();
-}
-
 bool is_certified(const scene::Scene& scene) {
   return plan::stability_of(scene.network, plan::liaison_graph(scene.network)).holds();
 }
@@ -55,10 +50,8 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
       step_rows(simulation.scene().signals.by_step().size(), simulation.division().max_steps()),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
-      is_certain(!is_moved_from_outside(simulation) || is_certified(simulation.scene())),
-      reach(is_certain && is_moved_from_outside(simulation)
-                ? plan::reach_limit(simulation.scene().network)
-                : plan::ReachLimit{}),
+      is_certain(is_certified(simulation.scene())),
+      reach(is_certain ? plan::reach_limit(simulation.scene().network) : plan::ReachLimit{}),
       watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
       shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network(), reach)),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}

@@ -6,6 +6,7 @@
 
 #include "sim_node/checks/limit_watch.h"
 #include "sim_node/run/change_counter.h"
+#include "sim_node/run/energy_watch.h"
 #include "sim_node/run/frame_store.h"
 #include "sim_node/run/shadow_world.h"
 #include "sim_node/run/simulation.h"
@@ -35,7 +36,8 @@ struct LoadedScene {
   StepRows step_rows;  ///< rows of the present turn
   ChangeCounter changes;
   LimitWatch limits;
-  bool is_certain;               ///< the step is certified, or nothing moves the scene from outside
+  EnergyWatch energy;            ///< largest energy in the eyes of the loop
+  bool is_certain;               ///< the step is certified
   plan::ReachLimit reach;        ///< within which it is certain; infinite where it is not certain
   bool is_beyond_reach = false;  ///< it has gone beyond its reach
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified

@@ -32,18 +32,16 @@ bool makes_energy(const engine::Energy& energy) noexcept {
   return is_above(0.1, energy.integration_error(), energy);
 }
 
-WorldFigures figures_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {
-  const engine::Energy energy = world.energy();
+WorldFigures figures_of(const engine::World& world, EnergyWatch& watch,
+                        const plan::ReachLimit& reach) noexcept {
+  const engine::Energy energy = watch.update(world);
   return {energy, world.step_count(), world.state_hash(), signs_of(world, energy, reach)};
 }
 
 BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
                     const plan::ReachLimit& reach) noexcept {
-  return {makes_energy(energy), plan::is_beyond(reach, world, energy)};
-}
-
-BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept {
-  return signs_of(world, world.energy(), reach);
+  return {makes_energy(energy), plan::is_beyond(reach, world, energy),
+          std::isfinite(energy.total())};
 }
 
 ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network,
@@ -82,7 +80,7 @@ std::optional<WorldFigures> ShadowWorld::read(std::chrono::milliseconds patience
   const bool fits = world_->take_state(room_, step_);
   copy_.store(Copy::kNone, std::memory_order_release);
   if (!fits) return std::nullopt;
-  return figures_of(*world_, reach_);
+  return figures_of(*world_, watch_, reach_);
 }
 
 }  // namespace cordis::sim

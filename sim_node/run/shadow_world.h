@@ -10,6 +10,7 @@
 
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/reach_limit.h"
+#include "sim_node/run/energy_watch.h"
 
 namespace cordis::sim {
 
@@ -17,6 +18,7 @@ namespace cordis::sim {
 struct BoundSigns {
   bool makes_energy = false;     ///< makes_energy()
   bool is_beyond_reach = false;  ///< plan::is_beyond() its ReachLimit
+  bool has_energy = true;        ///< false: the energy is no finite number
 };
 
 /// What a status reports of one moment of a world.
@@ -28,18 +30,20 @@ struct WorldFigures {
 };
 
 /// Real time: O(MATs + links + pairs), no allocation; much longer than a copy of the state.
-WorldFigures figures_of(const engine::World& world, const plan::ReachLimit& reach = {}) noexcept;
+/// @param watch  takes this moment into the largest energy
+WorldFigures figures_of(const engine::World& world, EnergyWatch& watch,
+                        const plan::ReachLimit& reach = {}) noexcept;
 
-/// True when the steps have made or taken more than 1 % of the largest energy. What a scene at rest
-/// makes by rounding, below 1e-20 J, does not count.
+/// True when the steps have made or taken more than 1 % of the largest energy that the scene has had.
+/// What a scene at rest makes by rounding, below 1e-20 J, does not count.
+/// @param energy  as an EnergyWatch has it; likewise below
 bool is_error_large(const engine::Energy& energy) noexcept;
 
 /// True when the steps have made more than a tenth of the largest energy.
 bool makes_energy(const engine::Energy& energy) noexcept;
 
-/// Real time: O(MATs + links + pairs), no allocation.
-BoundSigns signs_of(const engine::World& world, const plan::ReachLimit& reach) noexcept;
-/// @param energy  of the world now
+/// Real time: O(MATs), no allocation.
+/// @param energy  of the world now, as an EnergyWatch has it
 BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
                     const plan::ReachLimit& reach) noexcept;
 
@@ -68,6 +72,7 @@ class ShadowWorld {
   std::shared_ptr<const engine::Network> network_;
   plan::ReachLimit reach_;
   std::unique_ptr<engine::World> world_;  // made by the first read()
+  EnergyWatch watch_;                     // of all that was read
   std::vector<double> room_;              // of the loop while a copy is asked for
   std::size_t value_count_ = 0;           // likewise; of a state that is too large for the room
   std::uint64_t step_ = 0;                // likewise

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "node/assert.h"
 #include "node/config/count_text.h"
 #include "sim_node/checks/stability_check.h"
@@ -119,10 +121,8 @@ bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept 
       troubles_.first_jump_s = simulated_s();
     troubles_.drive_jumps += report.drive_jumps;
     if (report.wants_room) world_.make_room();
-    if (report.non_finite_mats > 0) {
-      failed_ = true;
-      return false;
-    }
+    failed_ = report.non_finite_mats > 0 || !report.has_energy;
+    if (failed_) return false;
     if (rows != nullptr && rows->columns() > 0) {
       scene_->signals.read_by_step(world_, rows->next(world_.step_count()));
     }
@@ -167,14 +167,25 @@ double Simulation::simulated_s() const noexcept {
 std::string Simulation::failure() const {
   if (!failed_) return {};
   const std::string what = "the scene diverged at step " + std::to_string(world_.step_count());
-  for (std::uint32_t mat = 0; mat < world_.network().mat_count(); ++mat) {
-    if (world_.position(mat).allFinite()) continue;
-    return what + ": the position of '" + scene::call_mat(*scene_, mat).name +
-           "' is not a finite number; it is " + reason_of_divergence(*scene_, mat) +
-           ". A step rate above " + std::to_string(std::lround(scene_->step_rate_hz)) +
+  const auto why = [this](std::uint32_t mat) {
+    return reason_of_divergence(*scene_, mat) + ". A step rate above " +
+           std::to_string(std::lround(scene_->step_rate_hz)) +
            " Hz, or less stiffness or viscosity, may hold it";
+  };
+  std::uint32_t fastest = 0;
+  double most = -1.0;
+  for (std::uint32_t mat = 0; mat < world_.network().mat_count(); ++mat) {
+    if (!world_.position(mat).allFinite())
+      return fmt::format("{}: the position of '{}' is not a finite number; it is {}", what,
+                         scene::call_mat(*scene_, mat).name, why(mat));
+    const double speed = world_.velocity(mat).cwiseAbs().maxCoeff();
+    if (scene_->network.mats[mat].kind != engine::MatKind::kMass || speed <= most) continue;
+    most = speed;
+    fastest = mat;
   }
-  return what;
+  if (most < 0.0) return what + ": its energy is not a finite number";
+  return fmt::format("{}: its energy is not a finite number; the fastest is '{}', which is {}",
+                     what, scene::call_mat(*scene_, fastest).name, why(fastest));
 }
 
 }  // namespace cordis::sim

@@ -97,10 +97,13 @@ class Simulation {
   /// Why the devices were let go of.
   PassedBound passed_bound() const noexcept { return passed_bound_; }
 
-  /// The scene diverged: a position is no longer finite. Its forces must not be used any more.
+  /// The scene diverged: a position or the energy is no longer finite. Its forces must not be used
+  /// any more.
   bool failed() const noexcept { return failed_; }
-  /// Which MAT left the finite numbers first, when, and which liaison is to blame; empty while
-  /// nothing failed. Not in real time.
+  /// The energy of the world is no finite number: it has diverged.
+  void fail() noexcept { failed_ = true; }
+  /// Which MAT left the finite numbers first, or is the fastest; when, and which liaison is to blame.
+  /// Empty while nothing failed. Not in real time.
   std::string failure() const;
 
  private:

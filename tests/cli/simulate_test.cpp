@@ -326,7 +326,109 @@ links: [{liaison: d, between: [wall, m], rest_m: 1}]
 )");
   run({led, "--duration", "2s", "--summary", path("l.json")});
   EXPECT_THAT(error_, testing::AnyOf(HasSubstr("than its step is certified for"),
-                                     HasSubstr("is no finite number any more")));
+                                     HasSubstr("energy is not a finite number")));
+}
+
+/// A mass that liaisons move.
+std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
+                  const std::string& links) {
+  return "cordis: 1\nname: moved\nspace: 1\nstep: {" + step +
+         "}\nmatter:\n  a: {kind: fixed, at_m: 0}\n  m: {kind: mass, mass_kg: 0.001, " + start +
+         "}\nliaisons:\n" + liaisons + "links:\n" + links;
+}
+
+const std::string kOneLink = "  - {liaison: c, between: [a, m]}\n";
+
+TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
+  const std::vector<std::string> scenes{
+      moved("rate_hz: 1000", "at_m: 0.1",
+            "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n", kOneLink),
+      moved("rate_hz: 44100", "at_m: 0.3",
+            "  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}\n"
+            "  c: {dissipation: '12*speed_m_per_s^3'}\n",
+            "  - {liaison: k, between: [a, m]}\n" + kOneLink)};
+  for (const std::string& text : scenes) {
+    const std::string scene = put("no_energy.yaml", text);
+    EXPECT_EQ(run({scene, "--duration", "4s", "--summary", path("n.json")}), kFailure) << text;
+    EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
+    EXPECT_THAT(error_, HasSubstr("energy is not a finite number; the fastest is 'm'"));
+    EXPECT_THAT(error_, HasSubstr("what came before is kept"));
+    const auto json = nlohmann::json::parse(text_of("n.json"));
+    EXPECT_EQ(json["complete"], false);
+    EXPECT_THAT(json["failure"].get<std::string>(), HasSubstr("not a finite number"));
+  }
+}
+
+TEST_F(Simulate, ClaimsNoLimitForALawThatHasNone) {
+  const std::string scene =
+      put("modes.yaml",
+          "cordis: 1\nname: modes\nspace: 1\nstep: {rate_hz: 2700, integrator: modal}\nmatter:\n"
+          "  s: {kind: string, count: 30, mass_kg: 0.001, ends: fixed, stiffness_n_per_m: 10000, "
+          "displacement_m: ['0.05*sin(0.1*index)'], layout_at_m: [0,0], layout_spacing_m: 0.01}\n"
+          "  b: {kind: fixed, at_m: 0.0}\n"
+          "liaisons: {d: {dissipation: {kind: power, coefficient: 0.15, exponent: 3}, rest_m: 0}}\n"
+          "links: [{liaison: d, between: [b, 's[20]']}]\n");
+  EXPECT_EQ(run({scene, "--duration", "2s"}), kFailure);
+  EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
+  EXPECT_THAT(error_, HasSubstr(") has no largest slope"));
+  EXPECT_THAT(error_, testing::Not(HasSubstr("within its limit")));
+}
+
+/// Scenes without devices and drives that are certified within a reach, and go beyond it.
+TEST_F(Simulate, WatchesAReachWithoutDevicesAndDrives) {
+  const std::vector<std::string> scenes{
+      moved("rate_hz: 1000", "at_m: 1",
+            "  t: {elasticity: '50 - 0*elongation_m'}\n"
+            "  c: {elasticity: '3.0e+4 * elongation_m^3'}\n",
+            "  - {liaison: t, between: [a, m]}\n" + kOneLink),
+      "cordis: 1\nname: pset\nspace: 2\n"
+      "step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}\n"
+      "world: {gravity_m_per_s2: [0, -9.81]}\nmatter:\n"
+      "  floor: {kind: plane, at_m: [0, 0], normal: y}\n"
+      "  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}\nliaisons:\n"
+      "  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: "
+      "0.2, exponent: 3}, pulls: false, range: rest}\n"
+      "links: [{liaison: c, between_sets: [m, floor]}]\n"};
+  for (const std::string& text : scenes) {
+    const std::string scene = put("reach.yaml", text);
+    run({scene, "--duration", "3s", "--summary", path("r.json")});
+    const auto json = nlohmann::json::parse(text_of("r.json"));
+    const auto bound = json["passed_bound"].get<std::string>();
+    EXPECT_THAT(bound, testing::AnyOf(HasSubstr("more than a tenth of the largest energy"),
+                                      HasSubstr("than its step is certified for")))
+        << text << error_;
+    EXPECT_THAT(error_, HasSubstr("above 1 % of the largest energy"));
+  }
+}
+
+TEST_F(Simulate, OwnsUpToWhatViscosityHasBroughtIn) {
+  const std::string scene = put(
+      "fall.yaml",
+      "cordis: 1\nname: fall\nspace: 2\nstep: {rate_hz: 375.426109, gesture_rate_hz: "
+      "375.426109}\nworld: {gravity_m_per_s2: [0, -9.81]}\nmatter:\n"
+      "  floor: {kind: plane, at_m: [0, 0], normal: y}\n"
+      "  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}\nliaisons:\n"
+      "  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: "
+      "0.2, exponent: 3}, pulls: false, range: rest}\n"
+      "links: [{liaison: c, between_sets: [m, floor]}]\n");
+  run({scene, "--duration", "2s", "--summary", path("v.json")});
+  EXPECT_THAT(error_, HasSubstr("can only take have brought in"));
+  const auto json = nlohmann::json::parse(text_of("v.json"));
+  EXPECT_GT(json["integration_error_j"].get<double>(),
+            0.1 * json["largest_energy_j"].get<double>());
+}
+
+/// A swing that dies away has had most at its start.
+TEST_F(Simulate, SaysTheLargestEnergyThatTheSceneHasHad) {
+  const std::string scene = put(
+      "swing.yaml", moved("rate_hz: 10000", "at_m: 0.1",
+                          "  c: {kind: spring_damper, stiffness_n_per_m: 1, viscosity_n_s_per_m: "
+                          "0.01, rest_m: 0}\n",
+                          kOneLink));
+  run({scene, "--duration", "10s", "--summary", path("s.json")});
+  const auto json = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_LT(json["energy_j"].get<double>(), 1e-9) << "it rests";
+  EXPECT_NEAR(json["largest_energy_j"].get<double>(), 0.005, 1e-5);
 }
 
 TEST_F(Simulate, GivesTheStateOfTheSameStepsInAnyPortions) {

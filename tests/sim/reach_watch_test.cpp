@@ -2,6 +2,8 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -44,7 +46,7 @@ class Paddle {
       simulation.devices()[0].receive(key_sample(static_cast<std::uint64_t>(tick_), position));
       simulation.advance(simulation.steps_of_tick(), events_);
       if (tick % static_cast<int>(loaded_->ticks_per_frame) > 0) continue;
-      const PassedBound bound = loaded_->passed_bound(signs_of(simulation.world(), loaded_->reach));
+      const PassedBound bound = loaded_->passed_bound(signs_now());
       if (bound != PassedBound::kNone) return bound;
     }
     return std::nullopt;
@@ -53,6 +55,11 @@ class Paddle {
   LoadedScene& scene() { return *loaded_; }
 
  private:
+  BoundSigns signs_now() {
+    const engine::World& world = loaded_->simulation.world();
+    return signs_of(world, loaded_->energy.update(world), loaded_->reach);
+  }
+
   double hertz_;
   std::unique_ptr<LoadedScene> loaded_;
   EventRoom events_{64};
@@ -115,11 +122,11 @@ TEST(ReachWatch, SeesAPortThatIsFasterThanTheReach) {
   Paddle paddle(25.0);
   engine::World& world = paddle.scene().simulation.world();
   const plan::ReachLimit reach = paddle.scene().reach;
-  EXPECT_FALSE(signs_of(world, reach).is_beyond_reach);
+  EXPECT_FALSE(signs_of(world, world.energy(), reach).is_beyond_reach);
   world.impose_position(paddle.scene().simulation.scene().ports[0].mat,
                         engine::Vec3(0.05 + 1.01e-3 * reach.speed, 0, 0));
   world.step();
-  EXPECT_TRUE(signs_of(world, reach).is_beyond_reach);
+  EXPECT_TRUE(signs_of(world, world.energy(), reach).is_beyond_reach);
 }
 
 /// Atoms in a row. Within a reach are the two fastest of them, not all together.
@@ -152,6 +159,131 @@ links:
   reach.pair_energy = loaded->reach.pair_energy;
   reach.energy = 4.99 * one;
   EXPECT_TRUE(plan::is_beyond(reach, world, world.energy())) << "all five";
+}
+
+/// A scene without devices and drives: what its loop has seen at the end.
+struct Alone {
+  PassedBound bound = PassedBound::kNone;
+  bool is_beyond_reach = false;
+  bool is_error_large = false;
+  std::string failure;
+};
+
+Alone play_alone(const std::string& text, double duration_s) {
+  const auto loaded = loaded_scene_of(text);
+  Simulation& simulation = loaded->simulation;
+  EventRoom events(64);
+  Alone seen;
+  while (simulation.simulated_s() < duration_s && !simulation.failed()) {
+    if (!simulation.advance(simulation.steps_of_tick(), events)) break;
+    if (simulation.tick_count() % loaded->ticks_per_frame > 0) continue;
+    const engine::Energy energy = loaded->energy.update(simulation.world());
+    seen.is_error_large = seen.is_error_large || is_error_large(energy);
+    const PassedBound bound =
+        loaded->passed_bound(signs_of(simulation.world(), energy, loaded->reach));
+    if (bound != PassedBound::kNone) simulation.let_devices_go(bound);
+  }
+  seen.bound = simulation.passed_bound();
+  seen.is_beyond_reach = loaded->is_beyond_reach;
+  seen.failure = simulation.failure();
+  return seen;
+}
+
+std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
+                  const std::string& links = "") {
+  return "cordis: 1\nname: moved\nspace: 1\nstep: {" + step +
+         "}\nmatter:\n  a: {kind: fixed, at_m: 0}\n  m: {kind: mass, mass_kg: 0.001, " + start +
+         "}\nliaisons:\n" + liaisons + "links:\n" + links + "  - {liaison: c, between: [a, m]}\n";
+}
+
+/// A ball that falls so fast on a contact that its viscosity throws it up again.
+const char* const kFall = R"(cordis: 1
+name: fall
+space: 2
+step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  floor: {kind: plane, at_m: [0, 0], normal: y}
+  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
+liaisons:
+  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
+links:
+  - {liaison: c, between_sets: [m, floor]}
+)";
+
+TEST(ReachWatch, WatchesAlsoWhatNothingMovesFromOutside) {
+  const std::string well = moved("rate_hz: 1000", "at_m: 1",
+                                 "  t: {elasticity: '50 - 0*elongation_m'}\n"
+                                 "  c: {elasticity: '3.0e+4 * elongation_m^3'}\n",
+                                 "  - {liaison: t, between: [a, m]}\n");
+  for (const std::string& text : {well, std::string(kFall)}) {
+    const Alone seen = play_alone(text, 3.0);
+    EXPECT_TRUE(seen.is_beyond_reach) << text;
+    EXPECT_EQ(seen.bound, PassedBound::kEnergy) << text;
+    EXPECT_TRUE(seen.is_error_large) << text;
+  }
+}
+
+TEST(ReachWatch, LeavesASceneAloneThatStaysWithinIts) {
+  const Alone seen = play_alone(moved("rate_hz: 10000", "at_m: 0.1, velocity_m_per_s: 1",
+                                      "  c: {elasticity: '3.0e+4 * elongation_m^3', rest_m: 0}\n"),
+                                2.0);
+  EXPECT_FALSE(seen.is_beyond_reach);
+  EXPECT_EQ(seen.bound, PassedBound::kNone);
+  EXPECT_FALSE(seen.is_error_large);
+  EXPECT_EQ(seen.failure, "");
+}
+
+TEST(ReachWatch, AnEnergyThatIsNoFiniteNumberIsADivergence) {
+  const std::vector<std::string> scenes{
+      moved("rate_hz: 1000", "at_m: 0.1",
+            "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n"),
+      moved("rate_hz: 44100", "at_m: 0.3",
+            "  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}\n"
+            "  c: {dissipation: '12*speed_m_per_s^3'}\n",
+            "  - {liaison: k, between: [a, m]}\n")};
+  for (const std::string& text : scenes) {
+    const std::string failure = play_alone(text, 4.0).failure;
+    EXPECT_NE(failure.find("the scene diverged at step"), std::string::npos) << text;
+    EXPECT_NE(failure.find("energy is not a finite number; the fastest is 'm'"), std::string::npos)
+        << failure;
+  }
+}
+
+/// Modes have no stiffness of their own that counts, and the law has no largest slope.
+TEST(ReachWatch, ADivergenceClaimsNoLimitForALawThatHasNone) {
+  const char* const modes = R"yaml(cordis: 1
+name: modes
+space: 1
+step: {rate_hz: 2700, integrator: modal}
+matter:
+  s: {kind: string, count: 30, mass_kg: 0.001, ends: fixed, stiffness_n_per_m: 10000, displacement_m: ["0.05*sin(0.1*index)"], layout_at_m: [0,0], layout_spacing_m: 0.01}
+  b: {kind: fixed, at_m: 0.0}
+liaisons:
+  d: {dissipation: {kind: power, coefficient: 0.15, exponent: 3}, rest_m: 0}
+links:
+  - {liaison: d, between: [b, "s[20]"]}
+)yaml";
+  const std::string failure = play_alone(modes, 2.0).failure;
+  EXPECT_NE(failure.find("the scene diverged at step"), std::string::npos);
+  EXPECT_NE(failure.find("d ("), std::string::npos) << failure;
+  EXPECT_NE(failure.find("has no largest slope"), std::string::npos) << failure;
+  EXPECT_EQ(failure.find("within its limit"), std::string::npos) << failure;
+}
+
+TEST(ReachWatch, TheLargestEnergyIsThatOfTheWholeRun) {
+  const auto loaded = loaded_scene_of(
+      moved("rate_hz: 10000", "at_m: 0.1",
+            "  c: {kind: spring_damper, stiffness_n_per_m: 1, viscosity_n_s_per_m: 0.01, rest_m: "
+            "0}\n"));
+  Simulation& simulation = loaded->simulation;
+  EventRoom events(64);
+  const double start = loaded->energy.update(simulation.world()).largest;
+  EXPECT_NEAR(start, 0.005, 1e-5);
+  while (simulation.simulated_s() < 10.0) simulation.advance(simulation.steps_of_tick(), events);
+  const engine::Energy energy = loaded->energy.update(simulation.world());
+  EXPECT_LT(energy.total(), 1e-9) << "it rests";
+  EXPECT_EQ(energy.largest, start);
 }
 
 }  // namespace

@@ -49,9 +49,10 @@ void expect_to_see_what_the_world_is(const std::string& text) {
   EventRoom events(64);
   ShadowWorld shadow(simulation.world().shared_network());
   EXPECT_FALSE(shadow.read(0ms)) << "nothing was handed over";
+  EnergyWatch watch;
   for (int n = 0; n < 5; ++n) {
     for (int tick = 0; tick < 100; ++tick) simulation.advance(simulation.steps_of_tick(), events);
-    const WorldFigures own = figures_of(simulation.world());
+    const WorldFigures own = figures_of(simulation.world(), watch);
     const test::AllocationGuard guard;
     shadow.hand_over(simulation.world());
     EXPECT_EQ(guard.count(), 0u);
@@ -84,7 +85,8 @@ TEST(ShadowWorld, WaitsForTheLoop) {
   ends = true;
   loop.join();
   ASSERT_TRUE(figures);
-  expect_same(*figures, figures_of(simulation.world()));
+  EnergyWatch watch;
+  expect_same(*figures, figures_of(simulation.world(), watch));
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+// sim_node/run/energy_watch.cpp
+#include "sim_node/run/energy_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cordis::sim {
+
+double energy_of_moment(const engine::Energy& energy) noexcept {
+  return std::abs(energy.kinetic + energy.kinetic_excess) +
+         std::abs(energy.elastic - energy.elastic_error) + std::abs(energy.gravity);
+}
+
+engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
+  engine::Energy energy = world.energy();
+  const double now = energy_of_moment(energy);
+  energy.largest = std::isfinite(now) ? std::max({largest_, now, std::abs(energy.initial)}) : now;
+  return energy;
+}
+
+engine::Energy EnergyWatch::update(const engine::World& world) noexcept {
+  const engine::Energy energy = read(world);
+  if (std::isfinite(energy.largest)) largest_ = energy.largest;
+  return energy;
+}
+
+}  // namespace cordis::sim

@@ -1,0 +1,24 @@
+// sim_node/run/energy_watch.h -- the largest energy that a scene has had.
+#pragma once
+
+#include "sim_node/engine/world.h"
+
+namespace cordis::sim {
+
+/// Sees the energy of a world at some moments, such as its frames, and keeps the largest.
+class EnergyWatch {
+ public:
+  /// The energy of the world now; Energy::largest is that over all moments so far. Real time:
+  /// O(MATs + links + pairs), no allocation.
+  engine::Energy update(const engine::World& world) noexcept;
+  /// As update(), and keeps nothing.
+  engine::Energy read(const engine::World& world) const noexcept;
+
+ private:
+  double largest_ = 0.0;  // [J]
+};
+
+/// Kinetic energy and the magnitudes of the true potentials [J].
+double energy_of_moment(const engine::Energy& energy) noexcept;
+
+}  // namespace cordis::sim
