@@ -271,7 +271,8 @@ TEST(Participant, ThatObservesTakesAPortOfItsOwnWhereThereIsOne) {
 
 TEST(Participant, HasTheSamePortsAtEveryAddressOfLoopback) {
   const int domain = test::own_domain();
-  const Network second{.address = "127.0.0.2"};
+  Network second;
+  second.address = "127.0.0.2";
   ASSERT_TRUE(second.is_loopback());
 
   const ParticipantPorts observer(domain, second.address, true);
