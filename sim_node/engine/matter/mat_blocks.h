@@ -15,9 +15,10 @@ namespace cordis::engine {
 /// sums its forces in an order that depends on the network alone, not on how many threads there are.
 class MatBlocks {
  public:
-  static constexpr std::size_t kMinLinks = 16384;  ///< linear links, below which there is one block
-  static constexpr std::size_t kLinksOfBlock =
-      1024;  ///< at least so many linear links fall to a block
+  /// Linear links, below which there is one block.
+  static constexpr std::size_t kMinLinks = 16384;
+  /// Linear links of a block, on average at least.
+  static constexpr std::size_t kLinksOfBlock = 1024;
   static constexpr std::size_t kMaxBlocks = 128;
 
   /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each; one
