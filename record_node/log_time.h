@@ -17,13 +17,14 @@ class LogTime {
 
   /// @param received_nsec, published_nsec  UTC [ns]
   /// @param is_of_loop_here  a force loop of this host writes it
-  /// @return UTC [ns]; never below that of the message before
+  /// @return UTC [ns]; never below that of the message before, unless the clock was set back by a minute
   std::uint64_t next(std::uint64_t received_nsec, std::uint64_t published_nsec,
                      bool is_of_loop_here) noexcept {
     const bool is_sent_later = is_of_loop_here && received_nsec > published_nsec &&
                                received_nsec - published_nsec <= kLongestDetour;
     const std::uint64_t time = is_sent_later ? published_nsec : received_nsec;
-    last_nsec_ = is_of_loop_here ? std::max(last_nsec_, time) : time;
+    const bool is_set_back = last_nsec_ > received_nsec + kLongestDetour;  // the clock of the host
+    last_nsec_ = is_of_loop_here && !is_set_back ? std::max(last_nsec_, time) : time;
     return last_nsec_;
   }
 

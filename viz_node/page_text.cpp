@@ -327,7 +327,9 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"ports", ports(description.ports(), description.port_frames())},
                   {"signals", std::move(signals)},
                   {"surfaces", surfaces(description.surfaces())},
-                  {"colours", colours(description.colours())}});
+                  {"colours", colours(description.colours())},
+                  {"colours_left_out", description.colours().size() -
+                                           std::min(description.colours().size(), kMaxColours)}});
 }
 
 std::string status_text(const std::vector<ReportedNode>& nodes,

@@ -1,11 +1,13 @@
 // cli/simulate/simulate.cpp
 #include "cli/simulate/simulate.h"
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -30,6 +32,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using WallClock = std::chrono::steady_clock;
+
+/// @param threads  as many as SimulateOptions::threads says @return how many share a step now
+std::size_t share_steps(engine::World& world, std::size_t threads) {
+  const std::size_t count = threads > 0
+                                ? std::min(threads, world.block_count())
+                                : sim::fastest_thread_count(world, sim::usable_core_count());
+  try {
+    world.share_steps(std::make_shared<engine::ThreadTeam>(count));
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("the system does not give {} threads: {}", count, error.what()));
+  }
+  return count;
+}
 
 double duration_of(const SimulateOptions& options, const OfflineSession& session) {
   if (options.duration_s > 0.0) return options.duration_s;
@@ -178,10 +194,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   if (!options.state_file.empty()) state.emplace(options.state_file);
   Recording recording(options, session);
   SimulateResult result;
-  result.threads = options.threads > 0 ? options.threads
-                                       : sim::fastest_thread_count(session.world().shared_network(),
-                                                                   sim::usable_core_count());
-  session.simulation().world().share_steps(std::make_shared<engine::ThreadTeam>(result.threads));
+  result.threads = share_steps(session.simulation().world(), options.threads);
   result.warnings = session.warnings();
   result.settled = sim::settled_text(session.scene());
 

@@ -54,7 +54,7 @@ void World::share_steps(std::shared_ptr<ThreadTeam> team) noexcept {
 }
 
 std::size_t World::block_count() const noexcept {
-  return state_->blocks.count();
+  return state_->freezing ? 1 : state_->blocks.count();
 }
 
 void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {

@@ -2,20 +2,18 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
-#include "sim_node/engine/description/network.h"
+#include "sim_node/engine/world.h"
 
 namespace cordis::sim {
 
 /// The cores that this process may use; at least 1.
 std::size_t usable_core_count() noexcept;
 
-/// How many threads step a network fastest: 1, 2, 4 and so on up to `most`, measured on worlds of their own at
-/// the start. More threads count only where they save a tenth of the time. Takes about 50 ms for each count;
+/// How many threads step a world fastest: 1, 2, 4 and so on up to `most`, measured on a second world of its
+/// network. More threads count only where they save a tenth of the time. Takes about 50 ms for each count;
 /// nothing where the steps cannot be shared. Results do not depend on it.
-/// @throws what World throws. Precondition: there is a network.
-std::size_t fastest_thread_count(const std::shared_ptr<const engine::Network>& network,
-                                 std::size_t most);
+/// @throws what World throws
+std::size_t fastest_thread_count(const engine::World& world, std::size_t most);
 
 }  // namespace cordis::sim

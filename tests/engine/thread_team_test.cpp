@@ -1,6 +1,7 @@
 // tests/engine/thread_team_test.cpp -- threads that share a step, and the bits they come to.
 #include "sim_node/engine/core/thread_team.h"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include "sim_node/engine/matter/mat_blocks.h"
 #include "sim_node/engine/world.h"
@@ -68,6 +70,19 @@ TEST(ThreadTeam, SharesAllThingsOnce) {
       EXPECT_EQ(next, things);
     }
   }
+}
+
+/// A signal goes to the thread that waits for it, or to the one that the program has for it.
+TEST(ThreadTeam, TakesNoSignals) {
+  ThreadTeam team(3);
+  std::array<int, 3> blocked{};
+  team.run([&](std::size_t member) {
+    sigset_t mask;
+    pthread_sigmask(SIG_BLOCK, nullptr, &mask);
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP})
+      blocked[member] += sigismember(&mask, signal);
+  });
+  EXPECT_EQ(blocked, (std::array<int, 3>{0, 3, 3}));
 }
 
 /// Lattices, chains and nets of more links than MatBlocks::kMinLinks, with links left out, doubled, turned about
@@ -157,6 +172,29 @@ TEST(MatBlocks, GiveEachMatAndLinkToOneGroup) {
   }
 }
 
+/// Masses with links to many of their neighbours, before a long chain: blocks in the dense piece are no smaller than
+/// its links are long.
+TEST(MatBlocks, LeaveFewLinksToTheOthersInDensePiecesToo) {
+  std::mt19937 random(2);
+  NetworkDescription scene;
+  constexpr std::uint32_t kDense = 3000;
+  constexpr std::uint32_t kReach = 300;
+  for (std::uint32_t i = 0; i < 60'000; ++i) {
+    scene.mats.push_back(mass(0.1, Vec3(i, 0, 0)));
+    if (i >= kDense) scene.links.push_back({i - 1, i, 1.0, 0.0, 1.0});
+    for (int n = 0; n < 20 && i + kReach < kDense; ++n)
+      scene.links.push_back(
+          {i, i + 1 + static_cast<std::uint32_t>(random() % kReach), 1.0, 0.0, 1.0});
+  }
+  const MatBlocks blocks(scene);
+  EXPECT_GT(blocks.count(), 4U);
+  std::size_t others = 0;
+  for (const Link& link : scene.links) {
+    others += blocks.group_of(link) == blocks.group_of_others() ? 1 : 0;
+  }
+  EXPECT_LE(others, scene.links.size() / 100);
+}
+
 TEST(MatBlocks, AreOneWhereLinksJoinAnyPlacesOrAreFew) {
   std::mt19937 random(1);
   NetworkDescription scene;
@@ -203,6 +241,23 @@ TEST(ThreadTeam, OfAnySizeComesToTheSameBits) {
           EXPECT_EQ(shared.energy.dissipated, alone.energy.dissipated);
         }
       }
+    }
+  }
+}
+
+/// A scene that freezes has the bits of the one that does not, while nothing rests.
+TEST(ThreadTeam, HasTheBitsOfAStepThatLeavesOutWhatRests) {
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    NetworkDescription scene = LargeNetwork(seed).network(1 + static_cast<int>(seed % 3));
+    World whole = make_world(scene);
+    scene.freeze_tolerance = 1e-30;
+    World some = make_world(scene);
+    some.share_steps(std::make_shared<ThreadTeam>(3));
+    run(whole, 40);
+    run(some, 40);
+    ASSERT_EQ(some.asleep_count(), 0U);
+    for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+      ASSERT_EQ(some.position(i), whole.position(i)) << "seed " << seed << ", MAT " << i;
     }
   }
 }

@@ -46,6 +46,14 @@ TEST(LogTime, OfALoopNeverGoesBackWhateverTheClocksSay) {
   }
 }
 
+TEST(LogTime, BeginsAnewAfterTheClockWasSetBack) {
+  constexpr std::uint64_t kHour = 3'600'000 * kMsec;
+  LogTime log_time;
+  EXPECT_EQ(log_time.next(kBegin + kHour + kMsec, kBegin + kHour, true), kBegin + kHour);
+  EXPECT_EQ(log_time.next(kBegin + kMsec, kBegin, true), kBegin);
+  EXPECT_EQ(log_time.next(kBegin + 3 * kMsec, kBegin + 2 * kMsec, true), kBegin + 2 * kMsec);
+}
+
 TEST(LogTime, OfAllElseIsWhenTheMessageCame) {
   LogTime log_time;
   EXPECT_EQ(log_time.next(kBegin, kBegin - kMsec, false), kBegin);

@@ -14,7 +14,8 @@ namespace cordis::test {
 [[nodiscard]] inline std::string filled(
     std::string text, std::initializer_list<std::pair<std::string_view, std::string>> values) {
   for (const auto& [name, value] : values) {
-    const std::string gap = "<" + std::string(name) + ">";
+    std::string gap(1, '<');
+    gap.append(name).append(1, '>');
     std::size_t begin = text.find(gap);
     if (begin == std::string::npos) throw std::invalid_argument("the text has no gap " + gap);
     for (; begin != std::string::npos; begin = text.find(gap, begin + value.size()))

@@ -97,6 +97,19 @@ TEST(PageText, DescribesColoursAndWherePortsAre) {
   EXPECT_EQ(json["ports"][0]["rest"], Json::parse("[0.5, 0.25, 0]"));
   EXPECT_EQ(json["ports"][0]["direction"], Json::parse("[0, 1, 0]"));
   EXPECT_EQ(json["ports"][1]["rest"], Json::array()) << "a description may lack frames";
+  EXPECT_EQ(json["colours_left_out"], 0);
+}
+
+TEST(PageText, SaysHowManyColoursAPageDoesNotGet) {
+  msg::SceneDescription description = row_of_three();
+  msg::ColouredRange range;
+  range.count(1);
+  description.colours().assign(20'003, range);
+
+  const Json json = Json::parse(description_text(description, 1));
+
+  EXPECT_EQ(json["colours"].size(), 20'000u);
+  EXPECT_EQ(json["colours_left_out"], 3);
 }
 
 TEST(PageText, ReportsDevicesAsTheySayTheyAre) {

@@ -12,7 +12,8 @@ namespace cordis::engine {
 /// A fixed team of threads: the one that calls, and others that wait for it.
 ///
 /// Who waits polls for some 50 us, so that the threads of steps that follow one another stay awake, then
-/// sleeps. A team serves one caller at a time; its members have the floating-point mode of FloatMode.
+/// sleeps; a team of more members than the machine has cores sleeps at once. A team serves one caller at a time.
+/// Its members have the floating-point mode of FloatMode and take no signals.
 class ThreadTeam {
  public:
   /// @param member_count  threads, the caller included. Precondition: at least 1.
@@ -64,6 +65,7 @@ class ThreadTeam {
   Call call_ = nullptr;
   const void* task_ = nullptr;
   bool ends_ = false;
+  int polls_ = 0;
   alignas(kCacheLine) std::atomic<std::uint32_t> task_number_{0};
   alignas(kCacheLine) std::atomic<std::uint32_t> working_{0};  // other members that have not ended
   alignas(kCacheLine) std::atomic<std::uint32_t> arrived_{0};  // at the meeting

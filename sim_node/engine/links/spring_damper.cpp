@@ -29,10 +29,14 @@ std::vector<Link> links_of(Kind kind, const NetworkDescription& description,
     links.insert(links.end(), axes_of(kind, description), link);
   }
   if (blocks.count() == 1) return links;
-  std::stable_sort(links.begin(), links.end(), [&blocks](const Link& first, const Link& second) {
-    return blocks.group_of(first) < blocks.group_of(second);
-  });
-  return links;
+  std::vector<std::size_t> place(blocks.group_count() + 1, 0);  // of the next link of each group
+  std::vector<std::size_t> group;
+  group.reserve(links.size());
+  for (const Link& link : links) ++place[group.emplace_back(blocks.group_of(link)) + 1];
+  for (std::size_t g = 1; g < place.size(); ++g) place[g] += place[g - 1];
+  std::vector<Link> sorted(links.size());
+  for (std::size_t l = 0; l < links.size(); ++l) sorted[place[group[l]]++] = links[l];
+  return sorted;
 }
 
 }  // namespace
@@ -44,6 +48,7 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
       works_(blocks.group_count()),
       dimension_(description.dimension),
       is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
+      freezes_(description.freeze_tolerance > 0.0),
       active_(0, kLinkBatch) {
   arrange(links_of(kind, description, blocks), layout.is_by_axis() && kind == Kind::kAlong,
           axes_of(kind, description), description.step);
@@ -196,7 +201,7 @@ StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces, const ForceColu
                                   ThreadTeam& team) noexcept {
   if (column_a_.empty()) return {};
   CORDIS_ASSERT(!layout_.is_by_axis());
-  if (blocks_.count() > 1) {
+  if (blocks_.count() > 1 && !freezes_) {
     return add_groups(team, [&](std::size_t group, LinkWork& work) noexcept {
       const std::size_t first = groups_[group].first_row;
       const ActiveLinks::Run run{first, groups_[group + 1].first_row - first};

@@ -102,6 +102,7 @@ class SpringDamperArray {
   int dimension_;
   bool is_1d_;                               // 1 dimension, or vector springs
   bool viscous_ = false;                     // a link has viscosity
+  bool freezes_;                             // only some links are computed
   std::vector<LinkRun> runs_;                // by axis: all rows; else none
   std::vector<std::uint8_t> used_rows_;      // by axis: as of LinkArrangement
   std::vector<std::size_t> equal_;           // by run: where its parameters begin, or kNoneEqual

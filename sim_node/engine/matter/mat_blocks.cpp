@@ -24,10 +24,11 @@ std::size_t reach_of(const std::vector<Link>& links) {
   return std::max<std::size_t>(1, *place);
 }
 
-std::size_t block_count(const NetworkDescription& description) {
+/// @param reach  of the links
+std::size_t block_count(const NetworkDescription& description, std::size_t reach) {
   const std::size_t links = description.links.size();
-  if (links < MatBlocks::kMinLinks || description.freeze_tolerance > 0.0) return 1;
-  const std::size_t by_reach = description.mats.size() / (kBatchRows + reach_of(description.links));
+  if (links < MatBlocks::kMinLinks) return 1;
+  const std::size_t by_reach = description.mats.size() / (kBatchRows + reach);
   const std::size_t by_size = links / MatBlocks::kLinksOfBlock;
   return std::clamp<std::size_t>(std::min(by_reach, by_size), 1, MatBlocks::kMaxBlocks);
 }
@@ -35,7 +36,8 @@ std::size_t block_count(const NetworkDescription& description) {
 }  // namespace
 
 MatBlocks::MatBlocks(const NetworkDescription& description) : first_{0} {
-  const std::size_t count = block_count(description);
+  const std::size_t reach = description.links.size() < kMinLinks ? 0 : reach_of(description.links);
+  const std::size_t count = block_count(description, reach);
   const std::size_t mat_count = description.mats.size();
   // The work of a MAT: itself, and the links that begin at it.
   std::vector<std::uint32_t> work(count > 1 ? mat_count : 0, 1);
@@ -46,7 +48,7 @@ MatBlocks::MatBlocks(const NetworkDescription& description) : first_{0} {
   std::size_t done = 0;
   for (std::uint32_t i = 0; i < work.size(); ++i) {
     done += work[i];
-    const std::size_t least = first_.back() + kBatchRows;
+    const std::size_t least = first_.back() + std::max<std::size_t>(kBatchRows, reach);
     if (i + 1 >= least && (i + 1) % kBatchRows == 0 && i + 1 + kBatchRows <= mat_count &&
         done >= whole * first_.size() / count) {
       first_.push_back(i + 1);
@@ -73,7 +75,10 @@ MatBlocks::Mats MatBlocks::mats_of_group(std::size_t group) const noexcept {
   CORDIS_ASSERT(group < group_count());
   if (group == group_of_others()) return {0, first_.back()};
   if (group < count()) return {first(group), last(group)};
-  return {first(group - count()), last(group - count() + 1)};
+  const std::size_t place = group - count();
+  const std::size_t even = count() / 2;  // groups from even blocks
+  const std::size_t block = place < even ? 2 * place : 2 * (place - even) + 1;
+  return {first(block), last(block + 1)};
 }
 
 }  // namespace cordis::engine

@@ -21,8 +21,8 @@ class MatBlocks {
   static constexpr std::size_t kLinksOfBlock = 1024;
   static constexpr std::size_t kMaxBlocks = 128;
 
-  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each; one
-  /// where the network freezes, has few linear links, or links that join MATs of any two places.
+  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each as that
+  /// lets them have; one where the network has few linear links, or links that join MATs of any two places.
   explicit MatBlocks(const NetworkDescription& description);
 
   std::size_t count() const noexcept { return first_.size() - 1; }
@@ -36,7 +36,11 @@ class MatBlocks {
   /// block alone, one of all.
   std::size_t group_count() const noexcept { return group_of_others() + 1; }
   std::size_t group_of(const Link& link) const noexcept;
-  std::size_t group_between(std::size_t block) const noexcept { return count() + block; }
+  /// From this block to the next: those from even blocks come before those from odd ones, for no two of
+  /// either join one MAT.
+  std::size_t group_between(std::size_t block) const noexcept {
+    return count() + block / 2 + (block % 2 == 0 ? 0 : count() / 2);
+  }
   std::size_t group_of_others() const noexcept { return count() > 1 ? 2 * count() - 1 : 0; }
   /// The MATs [first, last) that the links of a group join, at most.
   struct Mats {
