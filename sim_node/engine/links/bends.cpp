@@ -43,7 +43,7 @@ Vec3 BendArray::last_viscous_moment(std::size_t row) const noexcept {
 }
 
 StepEnergy BendArray::add_forces(const ForceColumns& columns) noexcept {
-  CORDIS_ASSERT(columns.axis_stride == 1);
+  CORDIS_ASSERT(rows_.empty() || columns.axis_stride == 1);
   StepEnergy work;
   for (std::size_t l = 0; l < rows_.size(); ++l) {
     const Row& row = rows_[l];
@@ -72,7 +72,7 @@ StepEnergy BendArray::add_forces(const ForceColumns& columns) noexcept {
 }
 
 StepEnergy BendArray::work_since_last_call(const MatArray& mats) const noexcept {
-  CORDIS_ASSERT(!mats.layout().is_by_axis());
+  CORDIS_ASSERT(rows_.empty() || !mats.layout().is_by_axis());
   StepEnergy work;
   for (std::size_t l = 0; l < rows_.size(); ++l) {
     const Row& row = rows_[l];
@@ -88,7 +88,7 @@ StepEnergy BendArray::work_since_last_call(const MatArray& mats) const noexcept 
 }
 
 double BendArray::potential_energy(const MatArray& mats) const noexcept {
-  CORDIS_ASSERT(!mats.layout().is_by_axis());
+  CORDIS_ASSERT(rows_.empty() || !mats.layout().is_by_axis());
   double sum = 0.0;
   for (const Row& row : rows_) {
     const Vec3 bend =
