@@ -249,7 +249,7 @@ TEST(ReachWatch, AnEnergyThatIsNoFiniteNumberIsADivergence) {
   }
 }
 
-/// Modes have no stiffness of their own that counts. The law is judged at the speeds in reach.
+/// Modes have no stiffness of their own that counts. The law counts at the speeds in reach.
 TEST(ReachWatch, ADivergenceNamesAPowerOfTheSpeed) {
   const char* const modes = R"yaml(cordis: 1
 name: modes

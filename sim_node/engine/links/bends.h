@@ -14,7 +14,7 @@
 namespace cordis::engine {
 
 /// Three positions in, three forces out: see Bend. Computed one by one, with the same bits on every vector
-/// width. Precondition of all calls: the MATs are stored by MAT.
+/// width. Precondition of all calls: where there are bends, the MATs are stored by MAT.
 class BendArray {
  public:
   explicit BendArray(const NetworkDescription& description);
