@@ -304,6 +304,41 @@ TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
   EXPECT_LT(std::abs(after_swinging(state, 1e-4).elastic_error), 1e-3 * largest);
 }
 
+/// Pairs of sets far beyond their force limit, with and without viscosity.
+TEST(Energy, OfAPairWithAForceLimitIsTheIntegralOfItsTension) {
+  for (const bool pulls : {true, false}) {
+    for (const double viscosity : {0.0, 0.02}) {
+      SCOPED_TRACE("viscosity " + std::to_string(viscosity));
+      LinkState state;
+      state.stiffness = 100.0;
+      state.viscosity = viscosity;
+      state.pulls = pulls;
+      state.force_limit = 0.3;
+      NetworkDescription scene;
+      scene.dimension = 2;
+      scene.step = 2e-5;
+      scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.02, 0.05, 0), Vec3(0.1, 0, 0))};
+      scene.state_machines = {Behaving().state(state).state_machine};
+      engine::SetLiaison set;
+      set.set_p = {0};
+      set.set_q = {1};
+      set.range = 2.0;
+      set.rest_length = 0.1;
+      scene.sets = {set};
+      World world = make_world(scene);
+      for (int n = 0; n < 10'000; ++n) {
+        world.step();
+        if (n % 50 != 0) continue;
+        const Energy energy = world.energy();
+        ASSERT_LT(std::abs(energy.integration_error()), 1e-5) << "step " << n;  // of 10 mJ
+        ASSERT_GT(energy.dissipated, -1e-5) << "step " << n;
+        const double taken = viscosity == 0.0 ? 0.0 : energy.dissipated;
+        ASSERT_NEAR(energy.dissipated, taken, 1e-5) << "step " << n;
+      }
+    }
+  }
+}
+
 /// Springs and laws far beyond their force limit: what they store is what their limited tension gives
 /// back, and viscosity only takes.
 TEST(Energy, OfALawWithAForceLimitIsTheIntegralOfItsTension) {

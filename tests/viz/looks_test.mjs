@@ -164,7 +164,8 @@ const cases = {
     // Ink on the sheet of marks at places of the key, with how far it is down in the same frame.
     const seen = () =>
       page.evaluate(
-        ([mat, pitch, way]) => {
+        async ([mat, pitch, way]) => {
+          await new Promise(requestAnimationFrame); // after the page has drawn where the key is now
           const sheet = document.querySelector('#marks');
           const box = sheet.getBoundingClientRect();
           const [x, y] = window.viz.position(mat);

@@ -149,8 +149,6 @@ struct LinearPair {
   double viscosity_over_dt = 0.0;  // [N/m]
   double min_tension = 0.0;        // [N]
   double max_tension = 0.0;        // [N]
-  double min_elongation = 0.0;     // that stores energy [m]
-  double max_elongation = 0.0;     // [m]
 };
 
 /// Finds tension / distance of each pair, and the part of it that stores no energy.

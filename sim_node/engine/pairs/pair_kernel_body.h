@@ -324,16 +324,13 @@ void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count,
   const Row viscosity = Lanes::every(pair.viscosity_over_dt);
   const Row min_tension = Lanes::every(pair.min_tension);
   const Row max_tension = Lanes::every(pair.max_tension);
-  const Row min_elongation = Lanes::every(pair.min_elongation);
-  const Row max_elongation = Lanes::every(pair.max_elongation);
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
-    const Row tension =
-        stiffness * elongation + viscosity * Lanes::load(row.elongation_increment + i);
+    const Row elastic = stiffness * elongation;
+    const Row tension = elastic + viscosity * Lanes::load(row.elongation_increment + i);
     const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
-    const Row stored =
-        stiffness * Lanes::minimum(max_elongation, Lanes::maximum(min_elongation, elongation));
+    const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
     Lanes::store(factor + i, limited * inverse);
     Lanes::store(viscous_factor + i, (limited - stored) * inverse);
   }

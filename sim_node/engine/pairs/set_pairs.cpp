@@ -147,8 +147,7 @@ void SetPairs::adopt(const StateTable& table) {
   path_ = Path::kAnyStateMachine;
   if (plain && is_none(elasticity)) {
     path_ = Path::kLinear;
-    linear_ = {term.stiffness,   term.viscosity_over_dt, term.min_tension,
-               term.max_tension, term.min_elongation,    term.max_elongation};
+    linear_ = {term.stiffness, term.viscosity_over_dt, term.min_tension, term.max_tension};
   } else if (plain && bare && lennard_jones != nullptr && surfaces_.empty()) {
     path_ = Path::kLennardJones;
     const LennardJones::Term law = lennard_jones->term();
