@@ -285,7 +285,7 @@ TEST(PortLoad, OfASetIsOnePartnerAtLeastAndAllForWhichThereIsRoomAtMost) {
   engine::SetLiaison set;
   set.set_p = {0};
   set.set_q = {1, 2, 3, 4, 5, 6, 7, 8, 9};
-  set.rest_length = 0.02;
+  set.rest_length = set.range = 0.02;
   scene.sets.push_back(set);
   const plan::LiaisonGraph graph = plan::liaison_graph(scene);
 
