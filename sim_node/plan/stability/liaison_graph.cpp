@@ -17,10 +17,6 @@ namespace {
 
 using engine::NetworkDescription;
 
-double radius_of(const NetworkDescription& network, std::uint32_t mat) {
-  return network.radius.empty() ? 0.0 : network.radius[mat];
-}
-
 double smallest_radius(const NetworkDescription& network, const std::vector<std::uint32_t>& mats) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const std::uint32_t mat : mats) smallest = std::min(smallest, radius_of(network, mat));

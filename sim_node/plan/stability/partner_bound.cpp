@@ -71,10 +71,6 @@ std::vector<std::uint32_t> counts_at_start(const NetworkDescription& network,
   return whole;
 }
 
-double radius_of(const NetworkDescription& network, std::uint32_t mat) {
-  return network.radius.empty() ? 0.0 : network.radius[mat];
-}
-
 /// Half of a set that members of the same or of the other half touch.
 struct Others {
   double smallest_radius = std::numeric_limits<double>::infinity();
@@ -187,6 +183,10 @@ PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLia
 }
 
 }  // namespace
+
+double radius_of(const NetworkDescription& network, std::uint32_t mat) {
+  return network.radius.empty() ? 0.0 : network.radius[mat];
+}
 
 double max_neighbours(int dimension, double own, double other) {
   if (dimension == 1) return 2.0;

@@ -28,6 +28,9 @@ inline constexpr double kPartnerMargin = 1.25;
 PartnerBounds partner_bounds(const engine::NetworkDescription& network,
                              const engine::SetLiaison& set);
 
+/// The radius of the ball of a MAT; 0 where it has none [m].
+double radius_of(const engine::NetworkDescription& network, std::uint32_t mat);
+
 /// How many balls of radius `other` touch a ball of radius `own` at once, at most: the kissing
 /// number of the space for balls that are not smaller, a bound of packing for smaller ones.
 double max_neighbours(int dimension, double own, double other);
