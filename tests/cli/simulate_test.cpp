@@ -332,9 +332,17 @@ links: [{liaison: d, between: [wall, m], rest_m: 1}]
 /// A mass that liaisons move.
 std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
                   const std::string& links) {
-  return "cordis: 1\nname: moved\nspace: 1\nstep: {" + step +
-         "}\nmatter:\n  a: {kind: fixed, at_m: 0}\n  m: {kind: mass, mass_kg: 0.001, " + start +
-         "}\nliaisons:\n" + liaisons + "links:\n" + links;
+  return test::filled(R"(cordis: 1
+name: moved
+space: 1
+step: {<step>}
+matter:
+  a: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.001, <start>}
+liaisons:
+<liaisons>links:
+<links>)",
+                      {{"step", step}, {"start", start}, {"liaisons", liaisons}, {"links", links}});
 }
 
 const std::string kOneLink = "  - {liaison: c, between: [a, m]}\n";
@@ -344,8 +352,9 @@ TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
       moved("rate_hz: 1000", "at_m: 0.1",
             "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n", kOneLink),
       moved("rate_hz: 44100", "at_m: 0.3",
-            "  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}\n"
-            "  c: {dissipation: '12*speed_m_per_s^3'}\n",
+            R"(  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}
+  c: {dissipation: '12*speed_m_per_s^3'}
+)",
             "  - {liaison: k, between: [a, m]}\n" + kOneLink)};
   for (const std::string& text : scenes) {
     const std::string scene = put("no_energy.yaml", text);
@@ -360,14 +369,17 @@ TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
 }
 
 TEST_F(Simulate, JudgesAPowerOfTheSpeedByTheSpeedInReach) {
-  const std::string scene =
-      put("modes.yaml",
-          "cordis: 1\nname: modes\nspace: 1\nstep: {rate_hz: 2700, integrator: modal}\nmatter:\n"
-          "  s: {kind: string, count: 30, mass_kg: 0.001, ends: fixed, stiffness_n_per_m: 10000, "
-          "displacement_m: ['0.05*sin(0.1*index)'], layout_at_m: [0,0], layout_spacing_m: 0.01}\n"
-          "  b: {kind: fixed, at_m: 0.0}\n"
-          "liaisons: {d: {dissipation: {kind: power, coefficient: 0.15, exponent: 3}, rest_m: 0}}\n"
-          "links: [{liaison: d, between: [b, 's[20]']}]\n");
+  const std::string scene = put("modes.yaml",
+                                R"(cordis: 1
+name: modes
+space: 1
+step: {rate_hz: 2700, integrator: modal}
+matter:
+  s: {kind: string, count: 30, mass_kg: 0.001, ends: fixed, stiffness_n_per_m: 10000, displacement_m: ['0.05*sin(0.1*index)'], layout_at_m: [0,0], layout_spacing_m: 0.01}
+  b: {kind: fixed, at_m: 0.0}
+liaisons: {d: {dissipation: {kind: power, coefficient: 0.15, exponent: 3}, rest_m: 0}}
+links: [{liaison: d, between: [b, 's[20]']}]
+)");
   EXPECT_EQ(run({scene, "--duration", "2s"}), kFailure);
   EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
   EXPECT_THAT(error_, HasSubstr("is too stiff for 2700 Hz"));
@@ -376,19 +388,23 @@ TEST_F(Simulate, JudgesAPowerOfTheSpeedByTheSpeedInReach) {
 
 /// Scenes without devices and drives that are certified within a reach, and go beyond it.
 TEST_F(Simulate, WatchesAReachWithoutDevicesAndDrives) {
-  const std::vector<std::string> scenes{
-      moved("rate_hz: 1000", "at_m: 1",
-            "  t: {elasticity: '50 - 0*elongation_m'}\n"
-            "  c: {elasticity: '3.0e+4 * elongation_m^3'}\n",
-            "  - {liaison: t, between: [a, m]}\n" + kOneLink),
-      "cordis: 1\nname: pset\nspace: 2\n"
-      "step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}\n"
-      "world: {gravity_m_per_s2: [0, -9.81]}\nmatter:\n"
-      "  floor: {kind: plane, at_m: [0, 0], normal: y}\n"
-      "  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}\nliaisons:\n"
-      "  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: "
-      "0.2, exponent: 3}, pulls: false, range: rest}\n"
-      "links: [{liaison: c, between_sets: [m, floor]}]\n"};
+  const std::vector<std::string> scenes{moved("rate_hz: 1000", "at_m: 1",
+                                              R"(  t: {elasticity: '50 - 0*elongation_m'}
+  c: {elasticity: '3.0e+4 * elongation_m^3'}
+)",
+                                              "  - {liaison: t, between: [a, m]}\n" + kOneLink),
+                                        R"(cordis: 1
+name: pset
+space: 2
+step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  floor: {kind: plane, at_m: [0, 0], normal: y}
+  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
+liaisons:
+  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
+links: [{liaison: c, between_sets: [m, floor]}]
+)"};
   for (const std::string& text : scenes) {
     const std::string scene = put("reach.yaml", text);
     run({scene, "--duration", "3s", "--summary", path("r.json")});
@@ -402,15 +418,19 @@ TEST_F(Simulate, WatchesAReachWithoutDevicesAndDrives) {
 }
 
 TEST_F(Simulate, OwnsUpToWhatViscosityHasBroughtIn) {
-  const std::string scene = put(
-      "fall.yaml",
-      "cordis: 1\nname: fall\nspace: 2\nstep: {rate_hz: 375.426109, gesture_rate_hz: "
-      "375.426109}\nworld: {gravity_m_per_s2: [0, -9.81]}\nmatter:\n"
-      "  floor: {kind: plane, at_m: [0, 0], normal: y}\n"
-      "  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}\nliaisons:\n"
-      "  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: "
-      "0.2, exponent: 3}, pulls: false, range: rest}\n"
-      "links: [{liaison: c, between_sets: [m, floor]}]\n");
+  const std::string scene = put("fall.yaml",
+                                R"(cordis: 1
+name: fall
+space: 2
+step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  floor: {kind: plane, at_m: [0, 0], normal: y}
+  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
+liaisons:
+  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
+links: [{liaison: c, between_sets: [m, floor]}]
+)");
   run({scene, "--duration", "2s", "--summary", path("v.json")});
   EXPECT_THAT(error_, HasSubstr("can only take have brought in"));
   const auto json = nlohmann::json::parse(text_of("v.json"));

@@ -9,6 +9,7 @@
 
 #include "sim_node/plan/plan.h"
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 
 namespace cordis::sim {
 namespace {
@@ -191,9 +192,18 @@ Alone play_alone(const std::string& text, double duration_s) {
 
 std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
                   const std::string& links = "") {
-  return "cordis: 1\nname: moved\nspace: 1\nstep: {" + step +
-         "}\nmatter:\n  a: {kind: fixed, at_m: 0}\n  m: {kind: mass, mass_kg: 0.001, " + start +
-         "}\nliaisons:\n" + liaisons + "links:\n" + links + "  - {liaison: c, between: [a, m]}\n";
+  return test::filled(R"(cordis: 1
+name: moved
+space: 1
+step: {<step>}
+matter:
+  a: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.001, <start>}
+liaisons:
+<liaisons>links:
+<links>  - {liaison: c, between: [a, m]}
+)",
+                      {{"step", step}, {"start", start}, {"liaisons", liaisons}, {"links", links}});
 }
 
 /// A ball that falls so fast on a contact that its viscosity throws it up again.
@@ -213,8 +223,9 @@ links:
 
 TEST(ReachWatch, WatchesAlsoWhatNothingMovesFromOutside) {
   const std::string well = moved("rate_hz: 1000", "at_m: 1",
-                                 "  t: {elasticity: '50 - 0*elongation_m'}\n"
-                                 "  c: {elasticity: '3.0e+4 * elongation_m^3'}\n",
+                                 R"(  t: {elasticity: '50 - 0*elongation_m'}
+  c: {elasticity: '3.0e+4 * elongation_m^3'}
+)",
                                  "  - {liaison: t, between: [a, m]}\n");
   for (const std::string& text : {well, std::string(kFall)}) {
     const Alone seen = play_alone(text, 3.0);
@@ -238,8 +249,9 @@ TEST(ReachWatch, AnEnergyThatIsNoFiniteNumberIsADivergence) {
       moved("rate_hz: 1000", "at_m: 0.1",
             "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n"),
       moved("rate_hz: 44100", "at_m: 0.3",
-            "  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}\n"
-            "  c: {dissipation: '12*speed_m_per_s^3'}\n",
+            R"(  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}
+  c: {dissipation: '12*speed_m_per_s^3'}
+)",
             "  - {liaison: k, between: [a, m]}\n")};
   for (const std::string& text : scenes) {
     const std::string failure = play_alone(text, 4.0).failure;
