@@ -22,6 +22,7 @@
 #include "cli/simulate/state_file.h"
 #include "cli/table/column_summary.h"
 #include "cli/table/sound_file.h"
+#include "node/machine/wakeups.h"
 #include "sim_node/checks/settling.h"
 #include "sim_node/checks/start_state.h"
 #include "sim_node/engine/core/thread_team.h"
@@ -37,7 +38,7 @@ using WallClock = std::chrono::steady_clock;
 std::size_t share_steps(engine::World& world, std::size_t threads) {
   const std::size_t count = threads > 0
                                 ? std::min(threads, world.block_count())
-                                : sim::fastest_thread_count(world, sim::usable_core_count());
+                                : sim::fastest_thread_count(world, machine::usable_cores().size());
   try {
     world.share_steps(std::make_shared<engine::ThreadTeam>(count));
   } catch (const std::system_error& error) {

@@ -6,10 +6,15 @@
 
 namespace cordis::sim {
 
+namespace {
+
+/// Kinetic energy and the magnitudes of the true potentials [J].
 double energy_of_moment(const engine::Energy& energy) noexcept {
   return std::abs(energy.kinetic + energy.kinetic_excess) +
          std::abs(energy.elastic - energy.elastic_error) + std::abs(energy.gravity);
 }
+
+}  // namespace
 
 engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
   engine::Energy energy = world.energy();

@@ -18,7 +18,4 @@ class EnergyWatch {
   double largest_ = 0.0;  // [J]
 };
 
-/// Kinetic energy and the magnitudes of the true potentials [J].
-double energy_of_moment(const engine::Energy& energy) noexcept;
-
 }  // namespace cordis::sim

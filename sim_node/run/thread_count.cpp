@@ -6,8 +6,6 @@
 #include <memory>
 #include <system_error>
 
-#include <sched.h>
-
 #include "sim_node/engine/core/thread_team.h"
 
 namespace cordis::sim {
@@ -30,12 +28,6 @@ WallClock::duration step_time(engine::World& world) {
 }
 
 }  // namespace
-
-std::size_t usable_core_count() noexcept {
-  cpu_set_t cores;
-  if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
-  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&cores)));
-}
 
 std::size_t fastest_thread_count(const engine::World& world, std::size_t most) {
   most = std::min(most, world.block_count());

@@ -7,9 +7,6 @@
 
 namespace cordis::sim {
 
-/// The cores that this process may use; at least 1.
-std::size_t usable_core_count() noexcept;
-
 /// How many threads step a world fastest: 1, 2, 4 and so on up to `most`, measured on a second world of its
 /// network. More threads count only where they save a tenth of the time. Takes about 50 ms for each count;
 /// nothing where the steps cannot be shared. Results do not depend on it.

@@ -23,6 +23,7 @@
 #include "cli/simulate/simulate_verb.h"
 #include "tests/cli/captured_run.h"
 #include "tests/support/filled.h"
+#include "tests/support/watched_scenes.h"
 
 namespace cordis::cli {
 namespace {
@@ -329,33 +330,18 @@ links: [{liaison: d, between: [wall, m], rest_m: 1}]
                                      HasSubstr("energy is not a finite number")));
 }
 
-/// A mass that liaisons move.
-std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
-                  const std::string& links) {
-  return test::filled(R"(cordis: 1
-name: moved
-space: 1
-step: {<step>}
-matter:
-  a: {kind: fixed, at_m: 0}
-  m: {kind: mass, mass_kg: 0.001, <start>}
-liaisons:
-<liaisons>links:
-<links>)",
-                      {{"step", step}, {"start", start}, {"liaisons", liaisons}, {"links", links}});
-}
-
 const std::string kOneLink = "  - {liaison: c, between: [a, m]}\n";
 
 TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
   const std::vector<std::string> scenes{
-      moved("rate_hz: 1000", "at_m: 0.1",
-            "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n", kOneLink),
-      moved("rate_hz: 44100", "at_m: 0.3",
-            R"(  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}
+      test::moved_mass("rate_hz: 1000", "at_m: 0.1",
+                       "  c: {elasticity: '100*elongation_m - 0.5*speed_m_per_s', rest_m: 0}\n",
+                       kOneLink),
+      test::moved_mass("rate_hz: 44100", "at_m: 0.3",
+                       R"(  k: {kind: spring, stiffness_n_per_m: 2000, rest_m: 0.1}
   c: {dissipation: '12*speed_m_per_s^3'}
 )",
-            "  - {liaison: k, between: [a, m]}\n" + kOneLink)};
+                       "  - {liaison: k, between: [a, m]}\n" + kOneLink)};
   for (const std::string& text : scenes) {
     const std::string scene = put("no_energy.yaml", text);
     EXPECT_EQ(run({scene, "--duration", "4s", "--summary", path("n.json")}), kFailure) << text;
@@ -388,23 +374,13 @@ links: [{liaison: d, between: [b, 's[20]']}]
 
 /// Scenes without devices and drives that are certified within a reach, and go beyond it.
 TEST_F(Simulate, WatchesAReachWithoutDevicesAndDrives) {
-  const std::vector<std::string> scenes{moved("rate_hz: 1000", "at_m: 1",
-                                              R"(  t: {elasticity: '50 - 0*elongation_m'}
+  const std::vector<std::string> scenes{
+      test::moved_mass("rate_hz: 1000", "at_m: 1",
+                       R"(  t: {elasticity: '50 - 0*elongation_m'}
   c: {elasticity: '3.0e+4 * elongation_m^3'}
 )",
-                                              "  - {liaison: t, between: [a, m]}\n" + kOneLink),
-                                        R"(cordis: 1
-name: pset
-space: 2
-step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
-world: {gravity_m_per_s2: [0, -9.81]}
-matter:
-  floor: {kind: plane, at_m: [0, 0], normal: y}
-  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
-liaisons:
-  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
-links: [{liaison: c, between_sets: [m, floor]}]
-)"};
+                       "  - {liaison: t, between: [a, m]}\n" + kOneLink),
+      test::kFallOnContact};
   for (const std::string& text : scenes) {
     const std::string scene = put("reach.yaml", text);
     run({scene, "--duration", "3s", "--summary", path("r.json")});
@@ -418,19 +394,7 @@ links: [{liaison: c, between_sets: [m, floor]}]
 }
 
 TEST_F(Simulate, OwnsUpToWhatViscosityHasBroughtIn) {
-  const std::string scene = put("fall.yaml",
-                                R"(cordis: 1
-name: fall
-space: 2
-step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
-world: {gravity_m_per_s2: [0, -9.81]}
-matter:
-  floor: {kind: plane, at_m: [0, 0], normal: y}
-  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
-liaisons:
-  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
-links: [{liaison: c, between_sets: [m, floor]}]
-)");
+  const std::string scene = put("fall.yaml", test::kFallOnContact);
   run({scene, "--duration", "2s", "--summary", path("v.json")});
   EXPECT_THAT(error_, HasSubstr("can only take have brought in"));
   const auto json = nlohmann::json::parse(text_of("v.json"));
@@ -440,11 +404,12 @@ links: [{liaison: c, between_sets: [m, floor]}]
 
 /// A swing that dies away has had most at its start.
 TEST_F(Simulate, SaysTheLargestEnergyThatTheSceneHasHad) {
-  const std::string scene = put(
-      "swing.yaml", moved("rate_hz: 10000", "at_m: 0.1",
-                          "  c: {kind: spring_damper, stiffness_n_per_m: 1, viscosity_n_s_per_m: "
-                          "0.01, rest_m: 0}\n",
-                          kOneLink));
+  const std::string scene =
+      put("swing.yaml",
+          test::moved_mass("rate_hz: 10000", "at_m: 0.1",
+                           "  c: {kind: spring_damper, stiffness_n_per_m: 1, viscosity_n_s_per_m: "
+                           "0.01, rest_m: 0}\n",
+                           kOneLink));
   run({scene, "--duration", "10s", "--summary", path("s.json")});
   const auto json = nlohmann::json::parse(text_of("s.json"));
   EXPECT_LT(json["energy_j"].get<double>(), 1e-9) << "it rests";

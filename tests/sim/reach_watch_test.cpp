@@ -9,7 +9,7 @@
 
 #include "sim_node/plan/plan.h"
 #include "tests/sim/loaded_scenes.h"
-#include "tests/support/filled.h"
+#include "tests/support/watched_scenes.h"
 
 namespace cordis::sim {
 namespace {
@@ -192,34 +192,8 @@ Alone play_alone(const std::string& text, double duration_s) {
 
 std::string moved(const std::string& step, const std::string& start, const std::string& liaisons,
                   const std::string& links = "") {
-  return test::filled(R"(cordis: 1
-name: moved
-space: 1
-step: {<step>}
-matter:
-  a: {kind: fixed, at_m: 0}
-  m: {kind: mass, mass_kg: 0.001, <start>}
-liaisons:
-<liaisons>links:
-<links>  - {liaison: c, between: [a, m]}
-)",
-                      {{"step", step}, {"start", start}, {"liaisons", liaisons}, {"links", links}});
+  return test::moved_mass(step, start, liaisons, links + "  - {liaison: c, between: [a, m]}\n");
 }
-
-/// A ball that falls so fast on a contact that its viscosity throws it up again.
-const char* const kFall = R"(cordis: 1
-name: fall
-space: 2
-step: {rate_hz: 375.426109, gesture_rate_hz: 375.426109}
-world: {gravity_m_per_s2: [0, -9.81]}
-matter:
-  floor: {kind: plane, at_m: [0, 0], normal: y}
-  m: {kind: mass, at_m: [0, 10], ball: {mass_kg: 0.001, radius_m: 0.01}}
-liaisons:
-  c: {kind: state_machine, stiffness_n_per_m: 100, dissipation: {kind: power, coefficient: 0.2, exponent: 3}, pulls: false, range: rest}
-links:
-  - {liaison: c, between_sets: [m, floor]}
-)";
 
 TEST(ReachWatch, WatchesAlsoWhatNothingMovesFromOutside) {
   const std::string well = moved("rate_hz: 1000", "at_m: 1",
@@ -227,7 +201,7 @@ TEST(ReachWatch, WatchesAlsoWhatNothingMovesFromOutside) {
   c: {elasticity: '3.0e+4 * elongation_m^3'}
 )",
                                  "  - {liaison: t, between: [a, m]}\n");
-  for (const std::string& text : {well, std::string(kFall)}) {
+  for (const std::string& text : {well, std::string(test::kFallOnContact)}) {
     const Alone seen = play_alone(text, 3.0);
     EXPECT_EQ(seen.bound, PassedBound::kEnergy) << text;
     EXPECT_TRUE(seen.is_error_large) << text;

@@ -20,23 +20,27 @@ std::size_t axes_of(Kind kind, const NetworkDescription& description) {
   return kind == Kind::kVectorSpring ? static_cast<std::size_t>(description.dimension) : 1;
 }
 
-/// By groups of the blocks, within one in link order.
-std::vector<Link> links_of(Kind kind, const NetworkDescription& description,
-                           const MatBlocks& blocks) {
+/// Links by groups of the blocks, within one in link order.
+struct GroupedLinks {
+  std::vector<Link> links;
+  std::vector<std::size_t> first;  // of each group; and one more, which ends the last
+};
+
+GroupedLinks links_of(Kind kind, const NetworkDescription& description, const MatBlocks& blocks) {
   std::vector<Link> links;
   for (const Link& link : description.links) {
     if (!is_of(kind, description, link)) continue;
     links.insert(links.end(), axes_of(kind, description), link);
   }
-  if (blocks.count() == 1) return links;
-  std::vector<std::size_t> place(blocks.group_count() + 1, 0);  // of the next link of each group
+  std::vector<std::size_t> first(blocks.group_count() + 1, 0);
   std::vector<std::size_t> group;
   group.reserve(links.size());
-  for (const Link& link : links) ++place[group.emplace_back(blocks.group_of(link)) + 1];
-  for (std::size_t g = 1; g < place.size(); ++g) place[g] += place[g - 1];
+  for (const Link& link : links) ++first[group.emplace_back(blocks.group_of(link)) + 1];
+  for (std::size_t g = 1; g < first.size(); ++g) first[g] += first[g - 1];
   std::vector<Link> sorted(links.size());
+  std::vector<std::size_t> place = first;
   for (std::size_t l = 0; l < links.size(); ++l) sorted[place[group[l]]++] = links[l];
-  return sorted;
+  return {std::move(sorted), std::move(first)};
 }
 
 }  // namespace
@@ -50,26 +54,26 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
       is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
       freezes_(description.freeze_tolerance > 0.0),
       active_(0, kLinkBatch) {
-  arrange(links_of(kind, description, blocks), layout.is_by_axis() && kind == Kind::kAlong,
+  const GroupedLinks grouped = links_of(kind, description, blocks);
+  arrange(grouped.links, grouped.first, layout.is_by_axis() && kind == Kind::kAlong,
           axes_of(kind, description), description.step);
 }
 
-/// @param links  by groups  @param axes  so many rows in turn are of one link
-void SpringDamperArray::arrange(const std::vector<Link>& links, bool with_runs, std::size_t axes,
-                                double step) {
+/// @param links  by groups  @param first  where the links of each group begin, and where the last end
+/// @param axes  so many rows in turn are of one link
+void SpringDamperArray::arrange(const std::vector<Link>& links,
+                                const std::vector<std::size_t>& first, bool with_runs,
+                                std::size_t axes, double step) {
   LinkArrangement rows;
   rows.link_of_row.reserve(padded(links.size(), kLinkBatch));
-  std::size_t l = 0;
   for (std::size_t group = 0; group < blocks_.group_count(); ++group) {
     groups_.push_back({rows.link_of_row.size(), rows.runs.size()});
-    const std::size_t first = l;
-    while (l < links.size() && blocks_.group_of(links[l]) == group) ++l;
     const bool may_overhang =
         group == blocks_.group_of_others();  // behind the last MAT there is room
     const std::size_t last_mat =
         blocks_.mats_of_group(group).last + (may_overhang ? kLinkBatch : 0);
-    arrange_links(std::span(links).subspan(first, l - first), static_cast<std::uint32_t>(first),
-                  with_runs, last_mat, rows);
+    arrange_links(std::span(links).subspan(first[group], first[group + 1] - first[group]),
+                  static_cast<std::uint32_t>(first[group]), with_runs, last_mat, rows);
   }
   const std::size_t row_count = rows.link_of_row.size();
   groups_.push_back({row_count, rows.runs.size()});

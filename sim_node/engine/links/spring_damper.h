@@ -82,7 +82,8 @@ class SpringDamperArray {
     std::size_t first_run = 0;
   };
 
-  void arrange(const std::vector<Link>& links, bool with_runs, std::size_t axes, double step);
+  void arrange(const std::vector<Link>& links, const std::vector<std::size_t>& first,
+               bool with_runs, std::size_t axes, double step);
   void fill_row(std::size_t row, const Link& link, std::uint32_t axis, double step) noexcept;
   void pad_row(std::size_t row, const MatBlocks::Mats& mats) noexcept;
   void find_equal_parameters(const LinkArrangement& arrangement);

@@ -93,24 +93,26 @@ Vec3 MatArray::next_velocity_increment(std::uint32_t mat,
   return pushed - (1.0 - retention) * moved(mat);
 }
 
-void MatArray::clear_forces(ThreadTeam& team) noexcept {
-  const auto clear = [&](std::size_t first, std::size_t last) noexcept {
-    if (!layout_.is_by_axis()) {
-      std::fill(force_.data() + 4 * first, force_.data() + 4 * last, 0.0);
-      return;
-    }
-    for (std::size_t axis = 0; axis < dimension_; ++axis) {
-      std::fill(force_.data() + layout_.offset(first, axis),
-                force_.data() + layout_.offset(last, axis), 0.0);
-    }
-  };
+/// Calls use(first, last) for MATs [first, last), whole blocks: the members of the team share all of them.
+template <class Use>
+void MatArray::share_blocks(ThreadTeam& team, const Use& use) const noexcept {
   if (blocks_.count() == 1) {
-    clear(0, count());
+    use(blocks_.first(0), blocks_.last(0));
     return;
   }
   team.run([&](std::size_t member) noexcept {
     const ThreadTeam::Share share = team.share(member, blocks_.count());
-    clear(blocks_.first(share.first), blocks_.first(share.last));
+    use(blocks_.first(share.first), blocks_.first(share.last));
+  });
+}
+
+void MatArray::clear_forces(ThreadTeam& team) noexcept {
+  const std::size_t axes = layout_.is_by_axis() ? dimension_ : 1;
+  share_blocks(team, [&](std::uint32_t first, std::uint32_t last) noexcept {
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      std::fill(force_.data() + layout_.offset(first, axis),
+                force_.data() + layout_.offset(last, axis), 0.0);
+    }
   });
 }
 
@@ -205,21 +207,14 @@ void MatArray::choose_rows(MassColumns& columns, const Range& range) const noexc
 /// @param share  of moved_product in the square of a displacement
 AdvanceReport MatArray::advance_rows(Advance advance_row, double* extrapolated, double share,
                                      ThreadTeam& team, bool& all_finite) noexcept {
-  const auto advance = [&](std::size_t first, std::size_t last) noexcept {
+  share_blocks(team, [&](std::uint32_t first_mat, std::uint32_t last_mat) noexcept {
     MassColumns row = columns(extrapolated);
-    for (std::size_t i = first; i < last; ++i) {
+    const std::size_t last = moving_from(last_mat);
+    for (std::size_t i = moving_from(first_mat); i < last; ++i) {
       choose_rows(row, moving_[i]);
       advanced_[i] = advance_row(row);
     }
-  };
-  if (blocks_.count() == 1) {
-    advance(0, moving_.size());
-  } else {
-    team.run([&](std::size_t member) noexcept {
-      const ThreadTeam::Share blocks = team.share(member, blocks_.count());
-      advance(moving_from(blocks_.first(blocks.first)), moving_from(blocks_.first(blocks.last)));
-    });
-  }
+  });
 
   AdvanceReport report;
   for (std::size_t i = 0; i < moving_.size(); ++i) {

@@ -164,6 +164,8 @@ class MatArray {
   MassColumns columns(double* extrapolated) noexcept;
   void choose_rows(MassColumns& columns, const Range& range) const noexcept;
   std::size_t moving_from(std::uint32_t mat) const noexcept;
+  template <class Use>
+  void share_blocks(ThreadTeam& team, const Use& use) const noexcept;
   void list_by_weight(std::span<const Range> rows, std::vector<Range>& listed) const noexcept;
   bool are_alike(std::size_t a, std::size_t b) const noexcept;
   /// Z of the medium on a mass over dt [N/m].
@@ -189,15 +191,14 @@ class MatArray {
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
-  AlignedVector<double> moved_;               // of masses [m]; empty unless `cordis`
-  AlignedVector<double> columns_;             // x(n) for position() [m]; empty unless by axis
-  AlignedVector<double> dt2_over_mass_;       // [s^2/kg], 0 unless a mass
-  AlignedVector<double> velocity_retention_;  // 1 - dt Z / m
-  std::vector<double> mass_;                  // [kg], 0 unless a mass
-  std::vector<std::uint8_t> weightless_;      // by MAT; empty: none, or no gravity
-  std::vector<std::uint8_t> driven_;          // by MAT; empty: none has a driven position
-  std::vector<Range>
-      masses_;  // rows of neighbouring masses, of one weight, one medium and one block
+  AlignedVector<double> moved_;                // of masses [m]; empty unless `cordis`
+  AlignedVector<double> columns_;              // x(n) for position() [m]; empty unless by axis
+  AlignedVector<double> dt2_over_mass_;        // [s^2/kg], 0 unless a mass
+  AlignedVector<double> velocity_retention_;   // 1 - dt Z / m
+  std::vector<double> mass_;                   // [kg], 0 unless a mass
+  std::vector<std::uint8_t> weightless_;       // by MAT; empty: none, or no gravity
+  std::vector<std::uint8_t> driven_;           // by MAT; empty: none has a driven position
+  std::vector<Range> masses_;                  // rows of neighbours of one weight, medium and block
   std::vector<Range> moving_;                  // those that are moved
   std::vector<AdvanceResult> advanced_;        // of each of these in this step
   std::vector<std::uint32_t> ports_;           // MATs that move_port() moves

@@ -97,7 +97,8 @@ void add_fields(const WorldFields& fields, Scene& scene, config::Problems& probl
     if (gravity && !mat.weightless) drives.push_back(push_with(i, *gravity, mat.mass));
     if (flow && viscosity > 0.0) drives.push_back(push_with(i, *flow, viscosity));
   }
-  CORDIS_ASSERT(written == network.drives.end());  // each is of a MAT that is there, in their order
+  // The drives stand in the order of their MATs, and each MAT exists.
+  CORDIS_ASSERT(written == network.drives.end());
   network.drives = std::move(drives);
 }
 
