@@ -134,7 +134,7 @@ void StatusSnapshot::fill(msg::NodeStatus& status, const std::string& refusal,
               : figures_.is_beyond_reach   ? kBeyondReach
                                            : loops);
   fill_figures(status);
-  report_integration_error(figures_.of_world.energy);
+  if (figures_.failure.empty()) report_integration_error(figures_.of_world.energy);
 }
 
 /// Precondition: the lock is held.

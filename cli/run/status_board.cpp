@@ -2,6 +2,7 @@
 #include "cli/run/status_board.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -83,12 +84,17 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
                         config::count_text(status.link_samples(), "sample"));
   }
   if (status.kind() == msg::KIND_SIM_NODE) {
-    text += fmt::format(
-        "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J taken "
-        "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
-        status.energy_j(), status.port_work_j(), status.switching_energy_j(), status.dissipated_j(),
-        status.largest_stability_number());
-    text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());
+    if (std::isfinite(status.energy_j()) && std::isfinite(status.integration_error_j())) {
+      text += fmt::format(
+          "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J "
+          "taken "
+          "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
+          status.energy_j(), status.port_work_j(), status.switching_energy_j(),
+          status.dissipated_j(), status.largest_stability_number());
+      text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());
+    } else {
+      text += "energy: not a finite number\n";
+    }
     text += partners_of(status);
     const auto report = [&text](std::uint64_t count, const char* what) {
       if (count > 0) text += fmt::format("{}: {}\n", what, count);

@@ -1,6 +1,8 @@
 // tests/cli/status_board_test.cpp
 #include "cli/run/status_board.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace cordis::cli {
@@ -119,6 +121,18 @@ state hash 0123456789abcdef after 10000 steps
 keyboard gave the hand -0.002 J, damped in 7 ticks
 keyboard: 1.20 % of 20000 samples without an answer of their own
 )");
+}
+
+TEST(StatusTable, SaysThatAnEnergyIsNotFiniteAndShowsNoFigureOfIt) {
+  StatusBoard board(0);
+  msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
+  sim.energy_j(std::numeric_limits<double>::quiet_NaN());
+  sim.port_work_j(2e229);
+  board.put(sim);
+  const std::string table = status_table({"sim"}, board);
+  EXPECT_NE(table.find("\nenergy: not a finite number\n"), std::string::npos) << table;
+  EXPECT_EQ(table.find("nan"), std::string::npos) << table;
+  EXPECT_EQ(table.find("e+229"), std::string::npos) << table;
 }
 
 TEST(StatusTable, ReportsCausesInTheWordsOfTheNode) {
