@@ -3,57 +3,21 @@
 //
 // usage: engine_bench --benchmark_filter=melt --benchmark_repetitions=5
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/reference/thread_time.h"
+#include "tests/bench/bench_scenes.h"
 
 namespace {
 
-using cordis::engine::Network;
-using cordis::engine::NetworkDescription;
-using cordis::engine::Vec3;
+using cordis::bench::melt;
 using cordis::engine::VectorWidth;
 using cordis::engine::World;
-
-/// The melt of LAMMPS' bench/in.lj: 4 x 20^3 balls of mass 1 on an fcc lattice of density 0.8442,
-/// Lennard-Jones with cut 2.5, dt 0.005, velocities of temperature 1.44. There it fills a periodic
-/// box; here it is a drop in free space, and the balls at its surface have fewer neighbours, so the
-/// counter `pairs_per_ball` stands beside the time (27.6 in the bulk).
-std::shared_ptr<const Network> melt(int cells = 20, double temperature = 1.44) {
-  NetworkDescription network;
-  network.step = 0.005;
-  const double side = std::cbrt(4.0 / 0.8442);
-  std::mt19937 random(87287);
-  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
-  const auto place = [&](int x, int y, int z) {
-    cordis::engine::Mat mat;
-    mat.mass = 1.0;
-    mat.position = 0.5 * side * Vec3(x, y, z);
-    mat.velocity = Vec3(uniform(), uniform(), uniform()) * std::sqrt(12.0 * temperature);
-    network.mats.push_back(mat);
-  };
-  for (int z = 0; z < 2 * cells; ++z) {
-    for (int y = 0; y < 2 * cells; ++y) {
-      for (int x = (y + z) % 2; x < 2 * cells; x += 2) place(x, y, z);
-    }
-  }
-  cordis::engine::StateMachine state_machine;
-  state_machine.states.resize(1);
-  state_machine.states[0].elasticity = cordis::engine::LennardJones{1.0, 1.0, 2.5};
-  network.state_machines = {state_machine};
-  cordis::engine::SetLiaison set;
-  for (std::uint32_t i = 0; i < network.mats.size(); ++i) set.set_p.push_back(i);
-  set.range = 2.5;
-  network.sets = {set};
-  return std::make_shared<const Network>(network);
-}
 
 std::size_t pairs_in_range(const World& world, double range) {
   std::size_t count = 0;
