@@ -5,10 +5,12 @@
 
 namespace cordis::node {
 
-/// While it lives, threads that the calling thread makes have SCHED_FIFO at a priority, where that
-/// is permitted; at its end the calling thread has its own policy again.
+/// While it lives, the calling thread and those that it makes have SCHED_FIFO at a priority, where
+/// that is permitted; at its end the calling thread has its own policy again. A thread that has
+/// realtime priority before keeps it.
 class InheritedPriority {
  public:
+  /// @param priority  0: all stays as it is
   explicit InheritedPriority(int priority) noexcept;
   ~InheritedPriority();
   InheritedPriority(const InheritedPriority&) = delete;
@@ -19,5 +21,8 @@ class InheritedPriority {
   sched_param parameters_{};
   bool changed_ = false;
 };
+
+/// The priority of the calling thread under SCHED_FIFO or SCHED_RR; 0 under another policy.
+int realtime_priority() noexcept;
 
 }  // namespace cordis::node

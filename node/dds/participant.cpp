@@ -61,6 +61,7 @@ Participant::Impl::Impl(const ParticipantConfig& config)
 }
 
 Participant::Impl::~Impl() {
+  const node::InheritedPriority priority = raised();
   {
     const std::lock_guard lock(watch_mutex_);
     ending_ = true;
@@ -86,6 +87,7 @@ std::string Participant::Impl::mismatch() const {
 }
 
 void Participant::Impl::drop(const Peer& peer) const noexcept {
+  const node::InheritedPriority priority = raised();
   const std::lock_guard lock(mutex_);
   presence_->drop(peer);
 }
@@ -95,6 +97,7 @@ std::chrono::milliseconds Participant::Impl::farewell() noexcept {
   const std::lock_guard lock(farewell_mutex_);
   const auto now = std::chrono::steady_clock::now();
   if (!farewell_end_) {
+    const node::InheritedPriority priority = raised();
     const std::lock_guard lock_of_presence(mutex_);
     presence_->drop_who_is_gone();
     farewell_end_ = now + kFarewell;
@@ -103,6 +106,7 @@ std::chrono::milliseconds Participant::Impl::farewell() noexcept {
 }
 
 void Participant::Impl::add(Endpoint& endpoint) {
+  const node::InheritedPriority priority = raised();
   const std::lock_guard lock(mutex_);
   endpoint.prepare(*presence_);
   endpoint.change_over();

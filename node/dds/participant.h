@@ -85,8 +85,9 @@ struct FoundWriter {
 /// Readers take nothing from a participant that speaks another version of the wire; writers fill in
 /// `wire_version` where a message has it.
 ///
-/// Its threads inherit the priority of the thread that makes it, but for the one that sends again
-/// what was lost: that one has ordinary priority.
+/// Its threads inherit the priority of the thread that makes it, but for the one that announces it
+/// and sends again what was lost: that one has the lowest realtime priority. Who adds or removes
+/// readers and writers, or drops a peer, has the priority of its threads meanwhile.
 class Participant {
  public:
   /// @throws std::runtime_error when DDS refuses (domain out of range or full, no loopback

@@ -19,6 +19,7 @@
 #include "node/dds/participant.h"
 #include "node/dds/presence.h"
 #include "node/dds/sample_socket.h"
+#include "node/inherited_priority.h"
 
 namespace cordis::dds {
 
@@ -51,6 +52,10 @@ struct Participant::Impl {
   const std::shared_ptr<PresentSocket>& present_socket() const noexcept { return present_socket_; }
   void drop(const Peer& peer) const noexcept;
 
+  /// Who makes or deletes parts of the participant has the priority of its threads meanwhile.
+  /// `dds-resend` tries without a pause for what that caller has locked (resending_thread.h).
+  node::InheritedPriority raised() const noexcept { return node::InheritedPriority(priority_); }
+
   /// How much of kFarewell is left. The first call begins it, and drops the readers of processes
   /// that have ended, which acknowledge nothing any more.
   std::chrono::milliseconds farewell() noexcept;
@@ -60,6 +65,7 @@ struct Participant::Impl {
   /// @param delete_entity  called while no other presence can take its place
   template <class DeleteEntity>
   void remove(Endpoint& endpoint, DeleteEntity&& delete_entity) {
+    const node::InheritedPriority priority = raised();
     const std::lock_guard lock(mutex_);
     std::erase(endpoints_, &endpoint);
     delete_entity();
@@ -70,6 +76,7 @@ struct Participant::Impl {
   void watch() noexcept;
   bool rejoin() noexcept;
 
+  const int priority_ = node::realtime_priority();  // of its threads; 0: ordinary
   const ParticipantConfig config_;
   const std::shared_ptr<PresentSocket> present_socket_;
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
+#include <string>
 
 #include <dirent.h>
 #include <sched.h>
@@ -35,8 +37,10 @@ void lower_resending_thread(const std::vector<pid_t>& before) noexcept {
       return std::ranges::find(before, thread) != before.end() || !has_realtime_priority(thread);
     });
     if (threads.empty()) return;
-    const sched_param ordinary{};
-    sched_setscheduler(threads.back(), SCHED_OTHER, &ordinary);
+    sched_param lowest{};
+    lowest.sched_priority = sched_get_priority_min(SCHED_FIFO);
+    sched_setscheduler(threads.back(), SCHED_FIFO, &lowest);
+    std::ofstream("/proc/self/task/" + std::to_string(threads.back()) + "/comm") << "dds-resend";
   } catch (...) {  // out of memory: it keeps its priority
   }
 }

@@ -11,9 +11,12 @@ namespace cordis::dds {
 /// The threads of this process, the oldest first; none when /proc does not show them.
 std::vector<pid_t> threads_of_process();
 
-/// Takes realtime priority from the thread by which a participant sends again what was lost. That
-/// thread never waits for a lock: it tries until it has it. With realtime priority it would keep a
-/// core for most of a second from the thread that holds the lock, and all others of lower priority.
+/// Gives the lowest realtime priority to the thread by which a participant announces itself and
+/// sends again what was lost, and the name "dds-resend". That thread never waits for a lock of a
+/// writer: it tries until it has it, and keeps a core for most of a second from a thread of lower
+/// priority that holds the lock. So whoever takes such a lock has a higher one (Participant::Impl).
+/// The thread shares the lock by which the participant sends with the force loop, which ordinary
+/// priority would hold up. Nothing changes where the threads have ordinary priority.
 /// @param before  threads_of_process() before Fast DDS made the participant: it makes this thread
 /// last
 void lower_resending_thread(const std::vector<pid_t>& before) noexcept;

@@ -32,5 +32,18 @@ TEST(InheritedPriority, IsThatOfThreadsThatAreMadeMeanwhile) {
   EXPECT_EQ(policy_of_a_new_thread(), before);
 }
 
+TEST(InheritedPriority, LeavesAThreadOfRealtimePriorityAsItIs) {
+  if (!test::may_have_realtime_priority())
+    GTEST_SKIP() << "realtime priority is not permitted here";
+  EXPECT_EQ(realtime_priority(), 0);
+  {
+    const InheritedPriority outer(3);
+    const InheritedPriority inner(2);
+    EXPECT_EQ(realtime_priority(), 3);
+  }
+  const InheritedPriority none(0);
+  EXPECT_EQ(realtime_priority(), 0);
+}
+
 }  // namespace
 }  // namespace cordis::node

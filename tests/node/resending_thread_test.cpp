@@ -12,6 +12,7 @@
 #include <sys/syscall.h>
 
 #include "node/dds/participant.h"
+#include "node/dds/participant_impl.h"
 #include "node/inherited_priority.h"
 #include "tests/support/eventually.h"
 #include "tests/support/realtime_permission.h"
@@ -52,25 +53,63 @@ std::vector<pid_t> made_since(const std::vector<pid_t>& before) {
   return threads;
 }
 
+constexpr int kPriority = 40;
+
 bool is_ordinary(pid_t thread) {
   return sched_getscheduler(thread) == SCHED_OTHER;
 }
 
-TEST(ResendingThread, AloneOfAParticipantHasNoRealtimePriority) {
+int realtime_priority_of(pid_t thread) {
+  sched_param parameters{};
+  if (sched_getscheduler(thread) != SCHED_FIFO || sched_getparam(thread, &parameters) != 0)
+    return 0;
+  return parameters.sched_priority;
+}
+
+TEST(ResendingThread, AloneOfAParticipantHasTheLowestRealtimePriority) {
   if (!test::may_have_realtime_priority())
     GTEST_SKIP() << "realtime priority is not permitted here";
   const std::vector<pid_t> before = threads_of_process();
   std::optional<Participant> participant;
   {
-    const node::InheritedPriority priority(1);
+    const node::InheritedPriority priority(kPriority);
     participant.emplace(ParticipantConfig{test::own_domain(), "resending", "here"});
   }
   const std::vector<pid_t> threads = made_since(before);
 
-  ASSERT_EQ(std::ranges::count_if(threads, is_ordinary), 1);
-  const pid_t resending = *std::ranges::find_if(threads, is_ordinary);
+  const auto is_lowest = [](pid_t thread) { return realtime_priority_of(thread) == 1; };
+  ASSERT_EQ(std::ranges::count_if(threads, is_lowest), 1);
+  EXPECT_EQ(std::ranges::count(threads, kPriority, realtime_priority_of), std::ssize(threads) - 1);
+  const pid_t resending = *std::ranges::find_if(threads, is_lowest);
+  std::string name;
+  std::getline(std::ifstream("/proc/self/task/" + std::to_string(resending) + "/comm"), name);
+  EXPECT_EQ(name, "dds-resend");
   EXPECT_TRUE(test::eventually([&] { return waits_without_limit(resending); }));
   EXPECT_TRUE(test::eventually([&] { return std::ranges::count_if(threads, receives) == 2; }));
+}
+
+TEST(ResendingThread, IsOvertakenByWhoAddsAndRemovesReadersAndWriters) {
+  if (!test::may_have_realtime_priority())
+    GTEST_SKIP() << "realtime priority is not permitted here";
+  std::optional<Participant> participant;
+  {
+    const node::InheritedPriority priority(kPriority);
+    participant.emplace(ParticipantConfig{test::own_domain(), "resending", "here"});
+  }
+  /// Writes down the priority of the thread that makes it.
+  class Watch : public Endpoint {
+   public:
+    void prepare(Presence&) override { priority = node::realtime_priority(); }
+    void change_over() noexcept override {}
+    int priority = -1;
+  } watch;
+
+  participant->impl().add(watch);
+  EXPECT_EQ(watch.priority, kPriority);
+  int while_removed = -1;
+  participant->impl().remove(watch, [&] { while_removed = node::realtime_priority(); });
+  EXPECT_EQ(while_removed, kPriority);
+  EXPECT_EQ(node::realtime_priority(), 0);
 }
 
 TEST(ResendingThread, OfAParticipantOfOrdinaryPriorityStaysAsItIs) {

@@ -63,8 +63,8 @@ Seen* place_of(const void* mutex) {
 
 void note(const void* mutex) {
   if (inside) return;
-  if (own_kind == kUnknown) own_kind = kind_now();
   if (!looks.load(std::memory_order_relaxed)) return;
+  if (own_kind == kUnknown) own_kind = kind_now();  // not before: another thread may still lower it
   inside = true;
   if (own_kind == kLoop) loop_locks.fetch_add(1, std::memory_order_relaxed);
   if (Seen* place = place_of(mutex)) {
