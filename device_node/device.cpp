@@ -16,6 +16,7 @@
 #include "node/stop.h"
 #include "node/tick_cost.h"
 #include "node/time.h"
+#include "node/time_scale.h"
 
 namespace cordis::device {
 namespace {
@@ -27,6 +28,7 @@ constexpr auto kLookAround = milliseconds(100);        // for a scene, while the
 constexpr double kLooksPerSecond = 50.0;               // after the guardian
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
+constexpr std::int64_t kLook = 2'000'000;              // after the pace, in slow motion [ns]
 constexpr double kLongestPoll = 300e-6;                // for an answer, in a period [s]
 constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
 
@@ -64,7 +66,8 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
         if (!refusal.empty()) status.text("refused " + refusal);
         if (status.text().empty()) status.text(what_it_is(config_));
         // in lockstep the scene's answers set the pace
-        status.target_rate_hz(clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz);
+        status.target_rate_hz(
+            clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz * time_scale());
       }) {
   if (PointerPort* const port = driver_->pointer_port())
     pointer_.emplace(participant, config_, *port, epoch);
@@ -148,9 +151,25 @@ void Device::ask_for_realtime() {
                grant.memory_locked ? "locked" : "not locked");
 }
 
+/// Devices of this world play in real time whatever the scene says.
+double Device::time_scale() const noexcept {
+  return driver_->has_motors() ? node::kFullTimeScale : scenes_.time_scale();
+}
+
 void Device::play_paced(Exchange& exchange) {
-  node::PacedLoop pace(config_.layout.rate_hz);
+  double scale = time_scale();
+  exchange.set_time_scale(scale);
+  node::PacedLoop pace(config_.layout.rate_hz * scale);
   while (has_part() && !node::stop_requested()) {
+    if (const double wanted = time_scale(); wanted != scale) {
+      scale = wanted;
+      exchange.set_time_scale(scale);
+      pace = node::PacedLoop(config_.layout.rate_hz * scale);
+    }
+    if (scale < node::kFullTimeScale && pace.next_nsec() > node::monotonic_nsec() + kLook) {
+      node::sleep_until(node::monotonic_nsec() + kLook);
+      continue;
+    }
     pace.wait();
     meter_.late_ticks().count(pace.late_cause());
     exchange.play_period();

@@ -38,6 +38,7 @@ class Device {
   void describe();
   void record_unused();
   void play(Role role);
+  double time_scale() const noexcept;
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
   bool has_part() const noexcept { return scenes_.part() == part_; }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "node/assert.h"
+
 namespace cordis::device {
 
 Exchange::Exchange(const Setup& setup)
@@ -63,6 +65,18 @@ bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
   return false;
 }
 
+void Exchange::set_time_scale(double scale) noexcept {
+  CORDIS_ASSERT(scale == 1.0 || (scale > 0.0 && scale < 1.0 && !driver_.has_motors()));
+  time_scale_ = scale;
+  age_scale_ = std::min(age_scale_, scale);
+  paced_from_ = sample_.sample + 1;
+}
+
+/// Simulated time since a moment of the clock.
+double Exchange::simulated_s(std::int64_t since_nsec) const noexcept {
+  return static_cast<double>(clock_() - since_nsec) * 1e-9 * age_scale_;
+}
+
 void Exchange::let_go() noexcept {
   if (!driver_.has_motors()) return;
   driver_.let_go();
@@ -80,6 +94,7 @@ bool Exchange::consider(const GestureMessage& answer) noexcept {
   if (outcome == AnswerFilter::Outcome::kRefused) meter_.count_dropped();
   if (outcome != AnswerFilter::Outcome::kTaken) return false;
   if (answers_.newly_answered() > 0) {
+    if (answer.answered_sample >= paced_from_) age_scale_ = time_scale_;
     unapplied_ = true;
     unanswered_periods_ = 0;
     meter_.record_answer(answers_.newly_answered());
@@ -98,7 +113,7 @@ double Exchange::age_s() const noexcept {
     return static_cast<double>(sample_.sample - answers_.newest().answered_sample) /
            config_.layout.rate_hz;
   }
-  return static_cast<double>(clock_() - answers_.newest().answered_time_nsec) * 1e-9;
+  return simulated_s(answers_.newest().answered_time_nsec);
 }
 
 /// At the end of the travel the scene goes on under the force of a hand that cannot: that counts as
@@ -117,16 +132,17 @@ double Exchange::age_for_guard() noexcept {
     leaving_s_ += 1.0 / config_.layout.rate_hz;
     leaving_age_s_ += 1.0 / config_.layout.rate_hz;
   }
-  const double least =
-      stalls_.has_stalled() && !lockstep_ ? config_.force_guard.watchdog_s : leaving_age_s_;
+  const double least = stalls_.has_stalled(age_scale_) && !lockstep_
+                           ? config_.force_guard.watchdog_s
+                           : leaving_age_s_;
   return std::max(age_s(), least);
 }
 
 /// How long ago the command before went to motors that take one at any time.
 double Exchange::since_command_s() noexcept {
-  const std::int64_t now = clock_();
-  const std::int64_t before = std::exchange(commanded_nsec_, now);
-  return is_commanded_ ? static_cast<double>(now - before) * 1e-9 : ForceGuard::kWholePeriod;
+  const double since_s = simulated_s(commanded_nsec_);
+  commanded_nsec_ = clock_();
+  return is_commanded_ ? since_s : ForceGuard::kWholePeriod;
 }
 
 /// What the guard makes of the newest answer. @param share  of the period that is over
@@ -143,8 +159,9 @@ const AxisValues& Exchange::command(double age_s, double share, double since_s) 
 void Exchange::record_application() noexcept {
   if (!std::exchange(pending_, false)) return;
   const std::int64_t delay_nsec = clock_() - answers_.newest().answered_time_nsec;
-  if (!lockstep_) sample_.answer_delay_s = static_cast<double>(delay_nsec) * 1e-9;
-  if (std::exchange(unapplied_, false)) meter_.record_latency(delay_nsec);
+  if (!lockstep_) sample_.answer_delay_s = static_cast<double>(delay_nsec) * 1e-9 * age_scale_;
+  const bool is_first = std::exchange(unapplied_, false);
+  if (is_first && age_scale_ == 1.0) meter_.record_latency(delay_nsec);
 }
 
 /// Reads the sensors at the end of a period. @return false when they say nothing
@@ -194,7 +211,7 @@ void Exchange::play_period() noexcept {
   }
   begin_period();
   is_ticked_ = false;
-  const double wait_s = kAnswerShare / config_.layout.rate_hz;
+  const double wait_s = kAnswerShare / (config_.layout.rate_hz * time_scale_);
   const std::int64_t until = sensed_nsec_ + static_cast<std::int64_t>(wait_s * 1e9);
   if (unapplied_) apply();  // it came too late for the period before
   if (!leaving) apply_answers_until(until);
@@ -240,11 +257,12 @@ void Exchange::apply() noexcept {
 /// How much of the period is over that began with the newest reading, 0..1.
 double Exchange::share_now() const noexcept {
   const auto since_s = static_cast<double>(clock_() - sensed_nsec_) * 1e-9;
-  return std::clamp(since_s * config_.layout.rate_hz, 0.0, 1.0);
+  return std::clamp(since_s * config_.layout.rate_hz * time_scale_, 0.0, 1.0);
 }
 
 void Exchange::record_phase(bool in_time) noexcept {
-  const bool other = answers_.answers_another(config_.force_guard.watchdog_s, clock_());
+  const bool other =
+      answers_.answers_another(config_.force_guard.watchdog_s / age_scale_, clock_());
   const double unanswered_s = static_cast<double>(++unanswered_periods_) / config_.layout.rate_hz;
   misses_scene_ =
       present_ && answers_.has_any() && !other && unanswered_s > config_.force_guard.watchdog_s;

@@ -78,6 +78,12 @@ class Exchange {
   /// answer or call; true when it is answered.
   bool await_answer(std::chrono::nanoseconds silence) noexcept;
 
+  /// Between two periods, in real time: from now on simulated time passes so many times as fast as
+  /// real time, and the caller makes its periods longer. Every age and span counts in simulated time.
+  /// Until the scene answers a sample of the new pace, the slower of the two counts.
+  /// Precondition: scale is 1, or between 0 and 1 and there are no motors.
+  void set_time_scale(double scale) noexcept;
+
   /// Real time: plays a period from its beginning on, until its answer is at the motors, or
   /// kAnswerShare of it are over.
   void play_period() noexcept;
@@ -120,6 +126,7 @@ class Exchange {
   void apply() noexcept;
   bool is_answered() const noexcept { return answers_.has_answered(sample_.sample); }
   double share_now() const noexcept;
+  double simulated_s(std::int64_t since_nsec) const noexcept;
   double age_for_guard() noexcept;
   double since_command_s() noexcept;
   const AxisValues& command(double age_s, double share, double since_s) noexcept;
@@ -155,6 +162,9 @@ class Exchange {
   AnswerFilter answers_;
   HandWork work_;                    // role liaison
   std::int64_t commanded_nsec_ = 0;  // when the motors got a command within a period
+  double time_scale_ = 1.0;          // of the periods
+  double age_scale_ = 1.0;           // of what began before the present moment
+  std::uint64_t paced_from_ = 0;     // first sample of the present pace
   double leaving_s_ = 0.0;           // since leave()
   double leaving_age_s_ = 0.0;       // that the last answer is given; 0: it has its own
   bool present_ = false;             // the driver has its device

@@ -1,15 +1,18 @@
 // device_node/scene_watch.cpp
 #include "device_node/scene_watch.h"
 
+#include <algorithm>
+
 #include <spdlog/spdlog.h>
 
 #include "device_node/port_assignment.h"
 #include "node/time.h"
+#include "node/time_scale.h"
 
 namespace cordis::device {
 namespace {
 
-constexpr auto kLongestWait = std::chrono::seconds(1);
+constexpr std::int64_t kLongestWait = 1'000'000'000;  // [ns]
 constexpr auto kLook = std::chrono::milliseconds(5);
 
 constexpr std::uint64_t kPresent = 1;
@@ -35,14 +38,15 @@ SceneWatch::SceneWatch(dds::Participant& participant, const DeviceConfig& device
                        const Driver& driver)
     : device_(device),
       driver_(driver),
-      reader_(participant, dds::Topic::kDescription),
+      reader_(participant, dds::Topic::kDescription, &arrival_),
+      status_reader_(participant, dds::Topic::kStatus, &arrival_),
       part_(packed({})) {
   thread_ = std::thread([this] { loop(); });
 }
 
 SceneWatch::~SceneWatch() {
   ending_ = true;
-  reader_.interrupt();
+  arrival_.announce();
   thread_.join();
 }
 
@@ -64,15 +68,37 @@ std::string SceneWatch::refusal() const {
 void SceneWatch::loop() {
   msg::SceneDescription scene;
   while (!ending_) {
+    const std::uint32_t seen = arrival_.count();
     while (!ending_ && reader_.take(scene)) take(scene);
+    take_statuses();
     const std::int64_t now = node::monotonic_nsec();
     for (node::RepeatedEvent* event : {&questions_, &changes_, &refusals_}) event->report(now);
-    if (!ending_) reader_.wait(kLongestWait);
+    if (!ending_) arrival_.wait_until(seen, now + kLongestWait);
   }
+}
+
+void SceneWatch::take_statuses() {
+  while (!ending_ && status_reader_.take(status_)) {
+    if (status_.kind() != msg::KIND_SIM_NODE) continue;
+    status_epoch_ = status_.epoch();
+    target_rate_hz_ = status_.target_rate_hz();
+    update_time_scale();
+  }
+}
+
+/// In slow motion a sim_node aims at fewer gesture periods per second than its scene has.
+void SceneWatch::update_time_scale() noexcept {
+  const bool is_paced = status_epoch_ == epoch_ && target_rate_hz_ > 0.0 && gesture_rate_hz_ > 0.0;
+  const double scale = is_paced ? target_rate_hz_ / gesture_rate_hz_ : node::kFullTimeScale;
+  time_scale_.store(std::clamp(scale, node::kSlowestTimeScale, node::kFullTimeScale),
+                    std::memory_order_relaxed);
 }
 
 void SceneWatch::take(const msg::SceneDescription& scene) {
   if (scene.epoch() == 0) return refuse("a scene description without an epoch");
+  epoch_ = scene.epoch();
+  gesture_rate_hz_ = scene.gesture_rate_hz();
+  update_time_scale();
   const PortAssignment wanted = part_of(scene, device_, driver_);
   if (!wanted.impossible.empty()) return refuse(wanted.impossible);
   refuse({});

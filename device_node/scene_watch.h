@@ -9,7 +9,9 @@
 #include <thread>
 
 #include "device_node/device_config.h"
+#include "idl/control.h"
 #include "idl/scene.h"
+#include "node/dds/arrival.h"
 #include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/repeated_event.h"
@@ -40,6 +42,10 @@ class SceneWatch {
   /// Real time: one atomic read.
   Part part() const noexcept;
 
+  /// Simulated time per real time, as the sim_node of the scene says; 1 when it says nothing. Real
+  /// time: one atomic read.
+  double time_scale() const noexcept { return time_scale_.load(std::memory_order_relaxed); }
+
   /// Waits until the part is no longer this one, at most so long. Not in real time.
   void wait_for_another(const Part& known, std::chrono::milliseconds at_most) const;
 
@@ -49,17 +55,27 @@ class SceneWatch {
  private:
   void loop();
   void take(const msg::SceneDescription& scene);
+  void take_statuses();
+  void update_time_scale() noexcept;
   void refuse(const std::string& why);
   void record_part(const Part& part, const msg::SceneDescription& scene);
 
   const DeviceConfig& device_;
   const Driver& driver_;
+  dds::Arrival arrival_;
   dds::Reader<msg::SceneDescription> reader_;
+  dds::Reader<msg::NodeStatus> status_reader_;
+  msg::NodeStatus status_;          // of the thread, as the next four
+  std::uint64_t epoch_ = 0;         // of the newest scene
+  double gesture_rate_hz_ = 0.0;    // of it
+  std::uint64_t status_epoch_ = 0;  // of the sim_node heard last
+  double target_rate_hz_ = 0.0;     // of it
   node::RepeatedEvent questions_{"other scenes are questionable"};  // of the thread
   node::RepeatedEvent changes_{"the part of the device in the scene changed", spdlog::level::info};
   node::RepeatedEvent refusals_{"other descriptions of scenes were refused", spdlog::level::err};
-  std::string questionable_;          // of the thread
-  std::atomic<std::uint64_t> part_;   // packed
+  std::string questionable_;         // of the thread
+  std::atomic<std::uint64_t> part_;  // packed
+  std::atomic<double> time_scale_{1.0};
   mutable std::mutex refusal_mutex_;  // of the thread and who reports the status
   std::string refusal_;
   std::atomic<bool> ending_{false};

@@ -18,11 +18,13 @@ class StallWatch {
         limit_s_(std::max(kStall, kStallPeriods / rate_hz)),
         stepped_nsec_(clock()) {}
 
-  /// Once for each command. @return whether the one before is longer ago than the limit
-  bool has_stalled() noexcept {
+  /// Once for each command. @param time_scale  simulated time per real time, 0..1; between two commands
+  ///                                           the slower counts
+  /// @return whether the one before is longer ago than the limit
+  bool has_stalled(double time_scale = 1.0) noexcept {
     const std::int64_t now = clock_();
     const auto since_s = static_cast<double>(now - std::exchange(stepped_nsec_, now)) * 1e-9;
-    return since_s > limit_s_;
+    return since_s * std::min(time_scale, std::exchange(time_scale_, time_scale)) > limit_s_;
   }
 
  private:
@@ -35,6 +37,7 @@ class StallWatch {
   ClockFunction clock_;
   double limit_s_;
   std::int64_t stepped_nsec_;  // when a command was found last
+  double time_scale_ = 1.0;    // then
 };
 
 }  // namespace cordis::device

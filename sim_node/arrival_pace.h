@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,8 +29,15 @@ class ArrivalPace {
 
   /// Waits for the next tick, and receives what the devices send meanwhile. Also ends when a stop is
   /// requested. Real time: allocates nothing.
-  /// @return why the tick begins a period or more after the end of its own
-  node::LateCause wait(Simulation& simulation, DeviceLink& devices, InputLog& inputs);
+  /// @return why the tick begins a period or more after the end of its own; empty when the tick is
+  ///         not due after kLongestWait: then the wait goes on with the next call
+  std::optional<node::LateCause> wait(Simulation& simulation, DeviceLink& devices,
+                                      InputLog& inputs);
+
+  static constexpr std::int64_t kLongestWait = 20'000'000;  ///< longest wait of a call [ns]
+
+  /// The devices of the scene have changed: the next wait() begins a wait.
+  void begin_again() noexcept { is_waiting_ = false; }
 
   /// Restarts at another rate. Real time: allocates nothing.
   void restart(double rate_hz) noexcept;
@@ -37,12 +45,15 @@ class ArrivalPace {
   double rate_hz() const noexcept { return rule_.grid().rate_hz(); }
 
  private:
-  void wait_for_samples(Simulation& simulation, DeviceLink& devices, InputLog& inputs);
+  bool wait_for_samples(Simulation& simulation, DeviceLink& devices, InputLog& inputs);
   std::span<const ArrivalRule::Device> sent(Simulation& simulation);
 
   ArrivalRule rule_;
   std::vector<ArrivalRule::Device> sent_;
   bool is_first_ = true;
+  bool is_waiting_ = false;
+  std::uint32_t waited_from_ = 0;          // messages when the wait began
+  std::int64_t computed_nsec_ = 0;         // by the tick before
   std::int64_t begun_processor_nsec_ = 0;  // of the thread, when the present tick began
 };
 

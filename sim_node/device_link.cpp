@@ -55,9 +55,11 @@ void DeviceLink::listen() {
       const bool is_elsewhere = !device_reader_.is_of_this_host();
       if (!refused_.receive(description, node::monotonic_nsec(), is_elsewhere)) continue;
       reaches_.put(description.device_id(), description.epoch(), reach_of(description));
-      described_[{device_reader_.last_writer(), description.device_id()}] = description.epoch();
+      described_[{device_reader_.last_writer(), description.device_id()}] = {
+          description.epoch(), description.device(), description.driver()};
       keep_described();
     }
+    update_real_devices();
     refused_.measure(node::monotonic_nsec());
     refused_.report_repeats();
     undescribed_.report();
@@ -71,15 +73,26 @@ void DeviceLink::keep_described() {
   std::erase_if(described_, [&peers](const auto& entry) {
     return std::ranges::find(peers, entry.first.first, &dds::Peer::prefix) == peers.end();
   });
-  for (const auto& [device, epoch] : described_) {
-    refused_.keep(epoch);
-    reaches_.keep(epoch);
+  for (const auto& [device, description] : described_) {
+    refused_.keep(description.epoch);
+    reaches_.keep(description.epoch);
   }
+}
+
+void DeviceLink::update_real_devices() {
+  const std::vector<dds::Peer> peers = participant_.peers();
+  std::vector<RealDevices::Device> devices;
+  for (const auto& [who, description] : described_) {
+    if (std::ranges::find(peers, who.first, &dds::Peer::prefix) == peers.end()) continue;
+    devices.push_back({who.second, description.device, description.driver});
+  }
+  real_.update(std::move(devices));
 }
 
 void DeviceLink::play(const scene::Scene& scene) {
   refused_.play(scene);
   undescribed_.play(scene);
+  real_.play(scene);
 }
 
 std::string DeviceLink::refusal() const {
@@ -194,7 +207,7 @@ bool DeviceLink::may_repeat(const DeviceExchange& device) noexcept {
 template <class Sample>
 void DeviceLink::record_delay(const Sample& sample, const DeviceExchange& device) noexcept {
   const std::int64_t now = node::monotonic_nsec();
-  if (sample.answered_epoch() != epoch_ || device.is_restarting()) {
+  if (!measures_ || sample.answered_epoch() != epoch_ || device.is_restarting()) {
     delays_.leave_out(sample.epoch(), now);
   } else {
     delays_.record(sample.epoch(),

@@ -18,6 +18,7 @@
 #include "node/dds/writer.h"
 #include "sim_node/devices/answer_delay.h"
 #include "sim_node/devices/device_reach.h"
+#include "sim_node/devices/real_devices.h"
 #include "sim_node/devices/refused_devices.h"
 #include "sim_node/devices/undescribed_devices.h"
 #include "sim_node/run/input_log.h"
@@ -49,6 +50,11 @@ class DeviceLink {
   /// How late the devices of the scene are answered, and what they support; empty until that is
   /// measured. Any thread.
   std::string loops() const { return refused_.loops_text(); }
+  /// The devices of the scene that are not simulated; any thread.
+  const RealDevices& real_devices() const noexcept { return real_; }
+  /// Loop: from now on simulated time passes so many times as fast as real time. Below 1 the answers
+  /// are not measured: no hand feels how late they are.
+  void set_time_scale(double scale) noexcept { measures_ = scale == 1.0; }
 
   /// Loop: takes what the devices have sent. A device that repeats an answered sample gets its
   /// last answer again, in real time once in a tick. What is taken goes into the log.
@@ -86,9 +92,15 @@ class DeviceLink {
   bool may_repeat(const DeviceExchange& device) noexcept;
   void listen();
   void keep_described();
+  void update_real_devices();
 
   /// A process, and a device that it has described.
   using Described = std::pair<dds::ParticipantPrefix, std::uint32_t>;
+  struct Description {
+    std::uint64_t epoch = 0;
+    std::string device;
+    std::string driver;
+  };
 
   std::uint64_t epoch_;
   config::Clock clock_;
@@ -102,15 +114,17 @@ class DeviceLink {
   msg::GestureForces force_sample_;
   std::uint64_t unwritten_ = 0;
   std::vector<std::uint32_t> repeated_;  // real time: devices that got an answer again in this tick
+  bool measures_ = true;                 // the delays of answers
   AnswerDelays delays_;
   RefusedDevices refused_;
+  RealDevices real_;
   ReachTable reaches_;
   UndescribedDevices undescribed_{reaches_};
   std::vector<HeldSample<msg::GesturePositions>> held_positions_;  // in lockstep
   std::vector<HeldSample<msg::GestureForces>> held_forces_;
   dds::Participant& participant_;
   dds::Reader<msg::DeviceDescription> device_reader_;
-  std::map<Described, std::uint64_t> described_;  // with their epoch; of the listener
+  std::map<Described, Description> described_;  // of the listener
   std::atomic<bool> ending_{false};
   std::thread listener_;  // uses what stands above but the samples
 };

@@ -5,12 +5,19 @@
 
 #include "node/paced_loop.h"
 #include "node/tick_cost.h"
+#include "node/time.h"
 #include "sim_node/arrival_pace.h"
 
 namespace cordis::sim {
 namespace {
 
 constexpr int kLoopPriority = 80;
+constexpr std::int64_t kFollowed = 250'000'000;  // devices follow another pace within [ns]
+
+/// Ticks per second of real time.
+double pace_of(const SceneLoop& loop) noexcept {
+  return loop.simulation().scene().gesture_rate_hz * loop.time_scale();
+}
 
 }  // namespace
 
@@ -19,19 +26,35 @@ void run_realtime(SceneLoop& loop) {
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
-  ArrivalPace pace(loop.simulation().scene().gesture_rate_hz);
+  ArrivalPace pace(pace_of(loop));
+  std::int64_t changed_nsec = node::monotonic_nsec() - kFollowed;  // the pace, last
   const node::TickCost cost;
   std::uint64_t ticks = 0;
   while (!loop.finished()) {
-    loop.status().late_ticks().count(pace.wait(loop.simulation(), loop.devices(), loop.inputs()));
+    if (loop.devices().real_devices().are_played()) loop.set_time_scale(1.0);
+    if (pace.rate_hz() != pace_of(loop)) {
+      pace.restart(pace_of(loop));
+      loop.devices().set_time_scale(loop.time_scale());
+      changed_nsec = node::monotonic_nsec();
+    }
+    const std::optional<node::LateCause> late =
+        pace.wait(loop.simulation(), loop.devices(), loop.inputs());
+    if (!late) {
+      // The period is long, and requests do not wait for its end.
+      const bool has_request = loop.mailbox().waiting() != nullptr;
+      if (has_request) loop.execute();
+      if (has_request) pace.begin_again();
+      continue;
+    }
+    loop.status().late_ticks().count(*late);
     if (loop.finished()) break;
     ++ticks;
     const bool plays = loop.execute();
-    if (pace.rate_hz() != loop.simulation().scene().gesture_rate_hz)
-      pace.restart(loop.simulation().scene().gesture_rate_hz);
     if (!plays) loop.inputs().hold();
     const bool complete = plays && loop.play();
-    if (loop.simulation().misses_a_device()) loop.status().late_ticks().count_silent();
+    const bool is_followed = node::monotonic_nsec() - changed_nsec > kFollowed;
+    if (is_followed && loop.simulation().misses_a_device())
+      loop.status().late_ticks().count_silent();
     // Answers first: the hand waits for them, and the display does not.
     loop.devices().answer_received(loop.simulation());
     if (plays) loop.show(complete);

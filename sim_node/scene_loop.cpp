@@ -1,7 +1,9 @@
 // sim_node/scene_loop.cpp
 #include "sim_node/scene_loop.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -101,12 +103,18 @@ void SceneLoop::show(bool complete) {
   }
   take_steps(loaded);
   const std::uint64_t turns = complete ? simulation().tick_count() : ++turns_;
-  const bool due = (complete || runner_.is_paused()) && turns % loaded.ticks_per_frame == 0;
+  const bool due = (complete || runner_.is_paused()) && turns % ticks_per_frame(loaded) == 0;
   watch_bounds(due);
   const bool waits = clock_ != config::Clock::kRealtime;
   const bool has_many = loaded.frames.events().is_half_full() || loaded.frames.has_many_step_rows();
   if (due || (has_many && (waits || !frames_.is_busy()))) submit_frame();
   if (inputs_.is_half_full()) frames_.wake_early();
+}
+
+/// In slow motion frames come as often as ever, at every tick at most.
+std::uint64_t SceneLoop::ticks_per_frame(const LoadedScene& loaded) const noexcept {
+  const double ticks = static_cast<double>(loaded.ticks_per_frame) * time_scale();
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(ticks)));
 }
 
 void SceneLoop::show_rest() {

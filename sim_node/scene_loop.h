@@ -1,6 +1,7 @@
 // sim_node/scene_loop.h -- what a turn of the loop consists of, whatever the clock.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -61,6 +62,9 @@ class SceneLoop {
   RequestMailbox& mailbox() noexcept { return mailbox_; }
   InputLog& inputs() noexcept { return inputs_; }
   DeviceLink& devices() noexcept { return devices_; }
+  /// Seconds of simulated time per second of real time. Any thread.
+  void set_time_scale(double scale) noexcept { time_scale_ = scale; }
+  double time_scale() const noexcept { return time_scale_; }
   StatusSnapshot& status() noexcept { return status_; }
   /// Any thread.
   std::uint64_t lost_events() const noexcept { return frames_.lost_events(); }
@@ -70,6 +74,7 @@ class SceneLoop {
   void report_partners(const PartnersSeen& seen);
   void watch_bounds(bool is_frame);
   void take_steps(LoadedScene& loaded) noexcept;
+  std::uint64_t ticks_per_frame(const LoadedScene& loaded) const noexcept;
 
   config::Clock clock_;
   double duration_s_;
@@ -83,6 +88,7 @@ class SceneLoop {
   DeviceLink& devices_;
   StatusSnapshot& status_;
   const dds::Participant& participant_;
+  std::atomic<double> time_scale_{1.0};
   std::uint64_t turns_ = 0;  // for the pace of frames while the scene is paused
   node::RepeatedEvent crowding_{"a mass of a set touched still more others"};
   std::uint32_t partners_reported_ = 0;  // of this scene

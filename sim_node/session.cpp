@@ -29,9 +29,10 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       status_(participant_, msg::KIND_SIM_NODE, start.epoch,
               [this](msg::NodeStatus& status) {
                 snapshot_.fill(status, devices_.refusal(), devices_.loops());
+                status.target_rate_hz(status.target_rate_hz() * loop_.time_scale());
                 status.lost_events(loop_.lost_events());
               }),
-      control_(start, config.force, participant_, devices_, snapshot_, loop_) {}
+      control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {}
 
 int Session::run() {
   control_.publish_first_scene();

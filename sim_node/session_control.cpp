@@ -1,6 +1,7 @@
 // sim_node/session_control.cpp
 #include "sim_node/session_control.h"
 
+#include <stdexcept>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -16,11 +17,14 @@ namespace cordis::sim {
 
 SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
                                dds::Participant& participant, DeviceLink& devices,
-                               StatusSnapshot& snapshot, SceneLoop& loop)
+                               StatusSnapshot& snapshot, SceneLoop& loop,
+                               node::StatusPublisher& status)
     : epoch_(start.epoch),
+      clock_(start.launch.clock),
       devices_(devices),
       snapshot_(snapshot),
       loop_(loop),
+      status_(status),
       description_writer_(participant, dds::Topic::kDescription),
       executor_(
           loop.mailbox(), loop.simulation().shared_scene(), start.epoch,
@@ -35,21 +39,50 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
           }),
       commands_(
           participant, msg::KIND_SIM_NODE, start.command_guard(),
-          [this](const msg::ControlCommand& command) {
-            return execute([&] { return executor_.execute(command); });
-          },
+          [this](const msg::ControlCommand& command) { return execute(command); },
           [this](const msg::ControlCommand& command) -> node::Work {
             node::Work work = executor_.work_of(command);
             if (!work) return {};
             return [this, work = std::move(work)]() -> node::Finish {
-              return [this, finish = work()] { return execute(finish); };
+              return [this, finish = work()] { return execute(msg::VERB_LOAD, finish); };
             };
           }) {}
 
 /// In the thread of the commands.
-node::Answer SessionControl::execute(const std::function<node::Answer()>& command) {
+node::Answer SessionControl::execute(const msg::ControlCommand& command) {
+  if (command.verb() == msg::VERB_RATE) return change_time_scale(command.argument());
+  return execute(command.verb(), [&] { return executor_.execute(command); });
+}
+
+/// Changes the pace of the loop alone: the simulation stays as it is, and no take needs to know.
+node::Answer SessionControl::change_time_scale(const std::string& argument) {
+  double scale = 1.0;
+  try {
+    scale = read_command(msg::VERB_RATE, argument).time_scale;
+  } catch (const std::invalid_argument& refusal) {
+    return {false, refusal.what()};
+  }
+  if (clock_ != config::Clock::kRealtime)
+    return {false, "'rate' is for realtime sessions, and this one is not"};
+  const std::string real = devices_.real_devices().text();
+  if (!real.empty() && scale != 1.0)
+    return {false, real + " is no simulated device: it plays in real time alone"};
+  loop_.set_time_scale(scale);
+  status_.publish_now();
+  return {true, scale == 1.0
+                    ? "plays in real time"
+                    : "plays " + config::number_text(scale) + " times as fast as in real time"};
+}
+
+/// In the thread of the commands. A scene that is loaded begins in real time.
+node::Answer SessionControl::execute(msg::ControlVerb verb,
+                                     const std::function<node::Answer()>& command) {
   const auto before = executor_.scene();
   node::Answer answer = command();
+  if (verb == msg::VERB_LOAD && answer.accepted) {
+    loop_.set_time_scale(1.0);
+    status_.publish_now();
+  }
   if (executor_.scene() != before) devices_.play(*executor_.scene());
   snapshot_.change_shadow(loop_.runner().loaded_scene().shadow);
   return answer;

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "idl/scene.h"
 #include "node/command_listener.h"
 #include "node/dds/participant.h"
 #include "node/dds/writer.h"
 #include "node/node_main.h"
+#include "node/status.h"
 #include "sim_node/device_link.h"
 #include "sim_node/run/command_executor.h"
 #include "sim_node/scene_loop.h"
@@ -23,7 +25,8 @@ class SessionControl {
   /// All that is referred to must outlive this.
   /// @param is_forced  a scene is loaded though it is not certified to be stable
   SessionControl(const node::NodeStart& start, bool is_forced, dds::Participant& participant,
-                 DeviceLink& devices, StatusSnapshot& snapshot, SceneLoop& loop);
+                 DeviceLink& devices, StatusSnapshot& snapshot, SceneLoop& loop,
+                 node::StatusPublisher& status);
 
   /// Publishes the first scene. Before start().
   void publish_first_scene() { publish_scene(*executor_.scene(), 1); }
@@ -31,13 +34,17 @@ class SessionControl {
   void start() { commands_.start(); }
 
  private:
-  node::Answer execute(const std::function<node::Answer()>& command);
+  node::Answer execute(const msg::ControlCommand& command);
+  node::Answer execute(msg::ControlVerb verb, const std::function<node::Answer()>& command);
+  node::Answer change_time_scale(const std::string& argument);
   void publish_scene(const scene::Scene& scene, std::uint64_t version);
 
   std::uint64_t epoch_;
+  config::Clock clock_;
   DeviceLink& devices_;
   StatusSnapshot& snapshot_;
   SceneLoop& loop_;
+  node::StatusPublisher& status_;
   dds::Writer<msg::SceneDescription> description_writer_;
   CommandExecutor executor_;
   node::CommandListener commands_;  // its thread uses what stands above

@@ -11,6 +11,7 @@
 #include "idl/gesture.h"
 #include "node/control_verbs.h"
 #include "node/status_words.h"
+#include "node/time_scale.h"
 #include "viz_node/frame_encoder.h"
 
 namespace cordis::viz {
@@ -71,6 +72,7 @@ Json device_json(const msg::DeviceDescription& device) {
   const auto count = std::min<std::uint32_t>(device.coordinate_count(), msg::MAX_AXES);
   for (std::size_t axis = 0; axis < count; ++axis) travels.push_back(device.travel_m()[axis]);
   return {{"name", clipped(device.device())},
+          {"simulated", node::is_simulated_driver(device.driver())},
           {"key_pitch_m", device.key_pitch_m()},
           {"lowest_m", device.lowest_m()},
           {"travel_m", std::move(travels)}};

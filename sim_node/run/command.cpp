@@ -7,6 +7,7 @@
 #include "node/config/mapping_reader.h"
 #include "node/config/yaml_reader.h"
 #include "node/control_verbs.h"
+#include "node/time_scale.h"
 
 namespace cordis::sim {
 namespace {
@@ -93,6 +94,11 @@ Command read_command(msg::ControlVerb verb, const std::string& argument) {
       break;
     case msg::VERB_STATE:
       read_state(value, command, problems);
+      break;
+    case msg::VERB_RATE:
+      command.time_scale = config::read_number(
+          value, "the rate of a simulation", node::kFullTimeScale,
+          config::Range::between(node::kSlowestTimeScale, node::kFullTimeScale), problems);
       break;
     case msg::VERB_PAUSE:
     case msg::VERB_RESUME:

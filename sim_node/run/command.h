@@ -24,6 +24,7 @@ struct Command {
   std::vector<std::string> names;  ///< for VERB_GET: NAME or NAME.PARAMETER; none: all of the scene
   std::string links;               ///< links for VERB_STATE: name, name[3] or name[2..5]
   std::string state;               ///< new state for VERB_STATE
+  double time_scale = 1.0;         ///< simulated time per real time, for VERB_RATE
 };
 
 inline constexpr long kMaxSingleSteps = 1'000'000'000;

@@ -134,6 +134,12 @@ struct PromptRig {
                   .lockstep = false,
                   .clock = &time_now}) {}
 
+  /// Slow motion: periods are so many times longer.
+  void slow_down(int times) {
+    period_nsec = times * kPeriodNs;
+    exchange.set_time_scale(1.0 / times);
+  }
+
   /// One period from now on. The channel answers at once to what is sent, after a delay.
   void period(double value, std::int64_t answered_after_nsec) {
     const std::int64_t begin = time_nsec;
@@ -141,8 +147,8 @@ struct PromptRig {
     next_after = answered_after_nsec;
     channel.rig = this;
     exchange.play_period();
-    exchange.use_late_answer(begin + kPeriodNs - 50'000);
-    time_nsec = std::max(time_nsec, begin + kPeriodNs);
+    exchange.use_late_answer(begin + period_nsec - 50'000);
+    time_nsec = std::max(time_nsec, begin + period_nsec);
   }
 
   class Channel final : public TimedChannel {
@@ -160,6 +166,7 @@ struct PromptRig {
   PromptDriver driver;
   Channel channel;
   LoopMeter meter;
+  std::int64_t period_nsec = kPeriodNs;
   double next_value = 0.0;
   std::int64_t next_after = -1;
   std::size_t next_lost = 0;  // newest samples that the scene does not get
@@ -180,6 +187,33 @@ TEST(RealtimeExchange, AnswersGoToTheMotorsInTheTickOfTheirSample) {
   EXPECT_EQ(rig.driver.commands[1].at_nsec, 1'001'250'000);
   EXPECT_EQ(rig.driver.commands[1].value, 4.0);
   EXPECT_EQ(rig.driver.writes, 0) << "no whole period is played at once";
+}
+
+/// Periods of 100 ms are longer than any watchdog, and than what counts as a stall of the loop.
+TEST(RealtimeExchange, InSlowMotionAgesCountInSimulatedTime) {
+  time_nsec = 1'000'000'000;
+  PromptRig rig;
+  for (int i = 0; i < 5; ++i) rig.period(3.0, 120'000);
+  rig.slow_down(100);
+  for (int i = 0; i < 5; ++i) {
+    rig.period(3.0, 12'000'000);
+    EXPECT_EQ(rig.driver.commands.back().value, 3.0) << i;
+    EXPECT_NEAR(rig.driver.commands.back().share, 0.12, 1e-9);
+    EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << i;
+  }
+  EXPECT_NEAR(rig.channel.sent.back().answer_delay_s, 120e-6, 1e-9);
+
+  rig.slow_down(1);
+  for (int i = 0; i < 5; ++i) {
+    rig.period(3.0, 120'000);
+    EXPECT_EQ(rig.driver.commands.back().value, 3.0) << i;
+    EXPECT_EQ(rig.meter.phase(), Phase::kRunning) << i;
+  }
+
+  rig.slow_down(100);
+  for (int i = 0; i < 40; ++i) rig.period(3.0, -1);
+  EXPECT_EQ(rig.driver.commands.back().value, 0.0) << "a scene that is silent is still noticed";
+  EXPECT_EQ(rig.meter.phase(), Phase::kLost);
 }
 
 TEST(RealtimeExchange, SamplesSayWhenTheSensorsWereReadAndHowOldTheirAnswerWas) {

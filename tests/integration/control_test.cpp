@@ -319,6 +319,74 @@ TEST_F(ControlInRealtime, TheKeyFeelsNothingWhileTheScenePausesAndComesBackGradu
   }));
 }
 
+/// Steps per second of a sim_node, between two of its statuses.
+double pace_between(const msg::NodeStatus& begin, const msg::NodeStatus& end) {
+  return static_cast<double>(end.step() - begin.step()) /
+         static_cast<double>(end.time_nsec() - begin.time_nsec());
+}
+
+/// The pace of the slow one is compared with that of the same session before, whatever the machine.
+TEST_F(ControlInRealtime, SlowMotionIsFollowedByTheKeyAndSilencesNobody) {
+  start();
+  const auto pace = [&](std::uint64_t steps) {
+    const msg::NodeStatus begin = status_.of("sim");
+    EXPECT_TRUE(status_.wait_for(
+        "sim", [&](const msg::NodeStatus& now) { return now.step() > begin.step() + steps; }));
+    return pace_between(begin, status_.of("sim"));
+  };
+  const auto runs_at = [&](double rate_hz) {
+    for (const char* node : {"sim", "keyboard"}) {
+      EXPECT_TRUE(status_.wait_for(node, [&](const msg::NodeStatus& now) {
+        return std::abs(now.target_rate_hz() - rate_hz) < 1e-6 && now.phase() == msg::PHASE_RUNNING;
+      })) << node;
+    }
+  };
+  runs_at(1000.0);
+  const double full = pace(8000);
+
+  expect_done({"rate", "0.1"}, "sim: plays 0.1 times as fast as in real time");
+  runs_at(100.0);
+  EXPECT_NEAR(pace(800) / full, 0.1, 0.05);
+  dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  EXPECT_TRUE(feels(2.0, forces, force));
+
+  // Its periods are longer than the watchdogs of both sides.
+  expect_done({"rate", "0.01"}, "plays 0.01 times");
+  runs_at(10.0);
+  const msg::NodeStatus sim = status_.of("sim");
+  const msg::NodeStatus key = status_.of("keyboard");
+  EXPECT_NEAR(pace(80) / full, 0.01, 0.005);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(eventually([&] { return forces.take(force); }));
+    EXPECT_NEAR(force.force_n()[0], 2.0, 1e-9);
+  }
+  runs_at(10.0);
+  EXPECT_EQ(status_.of("sim").silent_ticks(), sim.silent_ticks());
+  EXPECT_EQ(status_.of("keyboard").silent_ticks(), key.silent_ticks());
+
+  expect_done({"pause"}, "paused at step ");
+  expect_done({"resume"}, "goes on at step ");
+  expect_done({"rate", "1"}, "plays in real time");
+  runs_at(1000.0);
+  EXPECT_TRUE(feels(2.0, forces, force));
+  EXPECT_NEAR(pace(8000) / full, 1.0, 0.5);
+
+  expect_refused({"rate", "2"}, "the rate of a simulation must be between 0.01 and 1, got 2");
+  expect_done({"rate", "0.5"}, "plays 0.5 times");
+  expect_done({"load", "stiff.yaml"}, "'wall' begins");
+  runs_at(1000.0);
+}
+
+TEST_P(Control, SlowMotionIsOfRealtimeSessionsAlone) {
+  start();
+  if (GetParam() == std::string("realtime")) {
+    expect_done({"rate", "0.5"}, "plays 0.5 times as fast as in real time");
+  } else {
+    expect_refused({"rate", "0.5"}, "'rate' is for realtime sessions, and this one is not");
+  }
+}
+
 /// Sends a command again and again, and counts the replies of each node.
 class Asking {
  public:

@@ -16,6 +16,7 @@ async function reported(session, name) {
 }
 
 const row = (page, name) => page.locator(`#parameters-list li[data-parameter="${name}"]`);
+const targetRate = async (page) => (await viz(page, 'nodes')).find(({ kind }) => kind === 'sim_node').target_rate_hz;
 const numberOf = (page, name) => row(page, name).locator('input[type=number]');
 
 const cases = {
@@ -50,13 +51,32 @@ const cases = {
     assert.match(await reported(session, STIFFNESS), / = 120$/);
   },
 
-  'a scene that the launch file lists is loaded, with its own parameters': async (session) => {
+  'slow motion: a slider and two keys slow the simulation, and the simulated devices follow': async ({ page }) => {
+    await until('the slider is there', () => page.locator('#slow').isVisible());
+    assert.equal(await textOf(page, '#slow-text'), '×1');
+    await page.locator('#slow-scale').focus();
+    await page.keyboard.press('Home');
+    await until('the simulation is slow', async () => Math.abs((await targetRate(page)) - 10) < 1e-6);
+    await until('so is the keyboard', async () => (await viz(page, 'nodes')).some(({ name, target_rate_hz: rate }) => name === 'keyboard' && Math.abs(rate - 10) < 1e-6));
+    assert.equal(await textOf(page, '#slow-text'), '×0.01');
+    await page.keyboard.press(']');
+    await page.keyboard.press(']');
+    await until('it is faster', async () => Math.abs((await targetRate(page)) - 100) < 1e-6);
+    await until('real time says so', async () => /^×0\.(0[5-9]|1[0-5])$/.test(await textOf(page, '#factor')));
+    assert.equal(await textOf(page, '#slow-text'), '×0.1');
+    await replied(page, /plays 0\.1 times as fast as in real time/);
+    await page.screenshot({ path: join(out, 'slow_motion.png') });
+  },
+
+  'a scene that the launch file lists is loaded, with its own parameters, in real time': async (session) => {
     const { page } = session;
+    assert.ok(Math.abs((await targetRate(page)) - 100) < 1e-6, 'it is slow still');
     const offered = await page.locator('#scenes option').allTextContents();
     assert.deepEqual(offered, ['Load …', 'membrane', 'hanging_chain']);
     await page.selectOption('#scenes', { label: 'hanging_chain' });
     await until('it is played', async () => (await viz(page, 'scene')).name === 'hanging_chain');
     await drawn(page, 2);
+    await until('it plays in real time', async () => (await targetRate(page)) === 1000 && (await textOf(page, '#slow-text')) === '×1');
     await until('the parameters are others', async () => (await row(page, STIFFNESS).count()) === 0);
   },
 

@@ -73,6 +73,15 @@ TEST(Command, WithAWrongArgumentIsRefusedInOneSentence) {
   EXPECT_EQ(refusal_of(msg::VERB_LOAD, "{a: b}"), "'load' needs the path of a scene");
 }
 
+TEST(Command, RateIsThatOfSimulatedTime) {
+  EXPECT_EQ(read_command(msg::VERB_RATE, "0.1").time_scale, 0.1);
+  EXPECT_EQ(read_command(msg::VERB_RATE, "1").time_scale, 1.0);
+  for (const char* argument : {"0.009", "1.001", "-1", "fast", ""})
+    EXPECT_NE(refusal_of(msg::VERB_RATE, argument), "") << argument;
+  EXPECT_EQ(refusal_of(msg::VERB_RATE, "2"),
+            "the rate of a simulation must be between 0.01 and 1, got 2");
+}
+
 TEST(Command, WithDamagedYamlIsRefused) {
   for (const char* argument : {"[", "{a", "'", "\x01", "a: b: c", "!tag x", "\xff"})
     EXPECT_NE(refusal_of(msg::VERB_LOAD, argument), "") << argument;
@@ -80,7 +89,7 @@ TEST(Command, WithDamagedYamlIsRefused) {
 
 TEST(Command, IsKnownForEveryVerbOfTheList) {
   for (const node::ControlVerb& verb : node::control_verbs()) {
-    const bool is_of_a_player = verb.verb == msg::VERB_SEEK || verb.verb == msg::VERB_RATE;
+    const bool is_of_a_player = verb.verb == msg::VERB_SEEK;
     const std::size_t found = refusal_of(verb.verb, "").find("knows no command");
     EXPECT_EQ(found != std::string::npos, is_of_a_player) << verb.name;
   }

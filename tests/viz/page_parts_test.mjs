@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups'];
+  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups', 'slow_motion'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, canBeSlowed, timeScaleOf } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -117,6 +117,21 @@ const cases = {
   'the contrast of black and white is 21': () => {
     assert.ok(Math.abs(contrast('#000000', '#ffffff') - 21) < 1e-9);
     assert.equal(contrast('#123456', '#123456'), 1);
+  },
+
+  'slow motion is for realtime sessions that play no real device': () => {
+    const sim = { kind: 'sim_node', target_rate_hz: 1000 };
+    const scene = { gesture_rate_hz: 1000, ports: [{ device: 'keys' }] };
+    const devices = (simulated) => [{ name: 'keys', simulated }, { name: 'faders', simulated: false }];
+    assert.ok(canBeSlowed(sim, scene, devices(true)), 'a real device that the scene does not play is no matter');
+    assert.ok(!canBeSlowed(sim, scene, devices(false)));
+    assert.ok(!canBeSlowed(sim, scene, [...devices(true), { name: 'keys', simulated: false }]), 'nor one on standby');
+    assert.ok(!canBeSlowed({ ...sim, target_rate_hz: 0 }, scene, devices(true)), 'lockstep and asap have no pace');
+    assert.ok(!canBeSlowed({ ...sim, kind: 'player' }, scene, devices(true)));
+    assert.ok(!canBeSlowed(undefined, scene, []) && !canBeSlowed(sim, null, []));
+    assert.equal(timeScaleOf({ ...sim, target_rate_hz: 10 }, scene), 0.01);
+    for (const other of [undefined, sim, { ...sim, target_rate_hz: 0 }, { ...sim, target_rate_hz: null }]) assert.equal(timeScaleOf(other, scene), 1);
+    assert.equal(timeScaleOf(sim, null), 1);
   },
 
   'a keyboard has the keys of its device, and those that play ports are as deep as their MATs': () => {

@@ -116,11 +116,14 @@ TEST(PageText, ReportsDevicesAsTheySayTheyAre) {
   msg::DeviceDescription keyboard;
   keyboard.device("keyboard");
   keyboard.coordinate_count(2);
+  keyboard.driver("mock");
   keyboard.key_pitch_m(0.01375);
   keyboard.lowest_m(-0.01);
   keyboard.travel_m()[1] = 0.02;
-  EXPECT_EQ(Json::parse(status_text({}, {keyboard}, {}, {}, {}, 1, kNow))["devices"],
-            Json::parse(R"([{"name": "keyboard", "key_pitch_m": 0.01375, "lowest_m": -0.01,
+  EXPECT_EQ(
+      Json::parse(status_text({}, {keyboard}, {}, {}, {}, 1, kNow))["devices"],
+      Json::parse(
+          R"([{"name": "keyboard", "simulated": true, "key_pitch_m": 0.01375, "lowest_m": -0.01,
                              "travel_m": [0, 0.02]}])"));
   keyboard.coordinate_count(1000);  // of another process
   EXPECT_EQ(Json::parse(status_text({}, {keyboard}, {}, {}, {}, 1, kNow))["devices"][0]["travel_m"]

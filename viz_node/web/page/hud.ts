@@ -4,6 +4,7 @@ import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } fro
 import { countsLine, eventLine } from './events.ts';
 import { VERSION, type Description, type Hello, type NodeState, type Reply, type Status } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
+import { timeScaleOf } from './slow_motion.ts';
 import { takeIn, type Take } from './take.ts';
 
 // After this time without a frame the view is called old, whatever the nodes say.
@@ -38,10 +39,12 @@ export class Hud {
   private status: Status | null = null;
   private take: Take | null = null; // null in a live session
   private description: Description | null = null;
+  private session = ''; // its name
   private otherVersion = false; // of viz_node than of this page
 
   setHello({ session, protocol }: Hello): void {
     this.otherVersion = protocol !== VERSION;
+    this.session = session;
     set('session', session);
     document.title = `${session} · Cordis`;
   }
@@ -49,7 +52,9 @@ export class Hud {
   setDescription(description: Description | null): void {
     this.description = description;
     if (description === null) return;
-    set('scene', `${description.name} · ${count(description.mat_count)} MATs`);
+    const mats = `${count(description.mat_count)} MATs`;
+    // Most sessions have the name of their scene, and a narrow window has no room for it twice.
+    set('scene', description.name === this.session ? mats : `${description.name} · ${mats}`);
     element('scene').title = `${description.scene_file}, ${count(description.link_count)} links`;
   }
 
@@ -78,7 +83,7 @@ export class Hud {
     set('time', Number.isFinite(measured.simulatedS) ? measured.simulatedS.toFixed(2) : NONE);
     set('time-more', Number.isFinite(measured.simulatedS) ? 's' : '');
     const factor = fresh && sim !== undefined ? measured.realTimeFactor : Number.NaN;
-    set('factor', Number.isFinite(factor) ? `×${factor.toFixed(2)}` : NONE, factor < 0.98 ? 'warn' : '');
+    set('factor', Number.isFinite(factor) ? `×${factor.toFixed(2)}` : NONE, factor < 0.98 * timeScaleOf(sim, this.description) ? 'warn' : '');
     // The frames of a take were taken by another clock.
     const lag = this.take !== null ? Number.NaN : fresh ? measured.lagS : measured.sinceFrameS;
     set('lag', Number.isFinite(lag) ? (1000 * lag).toFixed(0) : NONE, lag > 0.5 ? 'bad' : lag > 0.15 ? 'warn' : '');
@@ -132,6 +137,7 @@ export class Hud {
     set('energy', joined(withUnit(sim?.energy_j, 'J')));
     const drift = sim?.energy_drift;
     set('energy-more', typeof drift === 'number' ? `drift ${plain(drift)}, error ${joined(withUnit(sim?.integration_error_j, 'J'))}` : '');
+    element('energy').title = element('energy-more').textContent ?? ''; // a narrow window has no room for it
     element('account').hidden = sim === undefined;
     set('by-ports', joined(withUnit(sim?.port_work_j, 'J')));
     set('by-switching', joined(withUnit(sim?.switching_energy_j, 'J')));

@@ -24,6 +24,7 @@ import { toolsOf, type Description, type Frame, type Message, type Topology } fr
 import { chooseQuality, findRenderer } from './quality.ts';
 import { setText } from './rows.ts';
 import { SceneView } from './scene_view.ts';
+import { SlowMotion } from './slow_motion.ts';
 import { SignalPanel } from './signal_panel.ts';
 import type { SignalStore } from './signal_store.ts';
 import { SoundPanel } from './sound/sound_panel.ts';
@@ -74,6 +75,7 @@ export class Page {
   private readonly renderer = findRenderer();
   readonly connection: Connection;
   private readonly controls: Controls;
+  private readonly slowMotion: SlowMotion;
   private readonly parameters: ParameterPanel;
   readonly sound: SoundPanel;
   readonly takeBar: TakeBar;
@@ -112,6 +114,7 @@ export class Page {
       failed: (error) => this.note(error),
     });
     this.controls = new Controls(this.connection);
+    this.slowMotion = new SlowMotion((verb, more) => this.controls.command(verb, more));
     this.parameters = new ParameterPanel((verb, more, isShown) => (isShown ? this.controls.command(verb, more) : this.connection.command(verb, more)));
     this.sound = new SoundPanel(this.connection, (error) => this.note(error));
     this.takeBar = new TakeBar(this.connection);
@@ -149,6 +152,7 @@ export class Page {
         this.takeBar.update(message.nodes);
         if (this.description !== null && this.keyboards.describe(this.description, message.devices)) this.showLegend();
         this.parameters.update(this.maySet && this.connection.mayCommand && this.hud.commanded?.kind === 'sim_node', message.replies);
+        this.slowMotion.update(this.hud.commanded, this.description, message.devices, this.connection.mayCommand);
         return this.controls.update(this.hud.commanded, message.replies);
       case 'signals':
         if (message.scene !== this.description?.scene) return;
@@ -345,7 +349,7 @@ export class Page {
       if (event.ctrlKey || event.altKey || event.metaKey) return;
       if (takesKey(event.target, event.key)) return;
       if (keysAreListed() && event.key !== '?') return;
-      if (this.takeBar.key(event.key)) return event.preventDefault();
+      if (this.takeBar.key(event.key) || this.slowMotion.key(event.key)) return event.preventDefault();
       const action = keys[event.key];
       if (action === undefined) return;
       event.preventDefault();

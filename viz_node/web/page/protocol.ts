@@ -80,6 +80,7 @@ export interface Port {
 /** A device, as it says it is. */
 export interface DeviceShape {
   name: string;
+  simulated: boolean; // nothing real is moved by it
   key_pitch_m: Figure; // of keys side by side; 0: it is no keyboard
   lowest_m: Figure; // end of the travel of each key below its rest; 0: they differ
   travel_m: Figure[]; // per axis, from stop to stop; 0: unknown
