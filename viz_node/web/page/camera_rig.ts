@@ -22,8 +22,16 @@ const DIRECTIONS: Record<Preset, Vector3> = {
 };
 
 const FIELD_OF_VIEW = 40; // [degrees], vertical
-const ROOM = 1.12; // of a fitted scene, all around
+const ROOM = 1.12; // of a fitted scene, from side to side
+const FREE_ROOM = 1.06; // likewise, between what stands above and below it
+const LEAST_FREE = 0.4; // of the height
 const FARTHEST = 4; // times the size of a scene at first, up to which it is followed
+
+/** What stands over the view at its upper and lower edge [CSS pixels]. */
+export interface Edges {
+  top: number;
+  bottom: number;
+}
 
 export class CameraRig {
   orthographic: boolean;
@@ -40,6 +48,7 @@ export class CameraRig {
   constructor(
     element: HTMLElement,
     space: number,
+    private readonly edges: () => Edges, // that a fitted scene is kept out of
     private readonly changed: () => void,
   ) {
     this.orthographic = space < 3;
@@ -153,6 +162,7 @@ export class CameraRig {
     this.perspectiveCamera.aspect = this.width / this.height;
     this.perspectiveCamera.updateProjectionMatrix();
     this.setFlatScale(Number.isFinite(scale) ? scale : 1);
+    if (this.firstSize > 0 && !this.moved) this.fit(this.home);
   }
 
   update(): void {
@@ -172,11 +182,13 @@ export class CameraRig {
     const up = new Vector3().crossVectors(direction, right).normalize();
     const reach = (axis: Vector3) =>
       Math.abs(axis.x) * corners.x + Math.abs(axis.y) * corners.y + Math.abs(axis.z) * corners.z;
+    const { top, bottom } = this.keptFree();
     const scale = Math.max(
       (2 * ROOM * reach(right)) / this.width,
-      (2 * ROOM * reach(up)) / this.height,
+      (2 * FREE_ROOM * reach(up)) / (this.height - top - bottom),
       (0.02 * extent) / this.width,
     );
+    centre.addScaledVector(up, 0.5 * (top - bottom) * scale);
     const half = Math.tan(MathUtils.degToRad(FIELD_OF_VIEW / 2));
     const distance = (scale * this.height) / (2 * half) + reach(direction);
     this.target.copy(centre);
@@ -191,12 +203,21 @@ export class CameraRig {
     this.changed();
   }
 
+  /** At most so much of the edges that enough of the view is left. */
+  private keptFree(): Edges {
+    const { top, bottom } = this.edges();
+    const share = Math.min(1, ((1 - LEAST_FREE) * this.height) / Math.max(top + bottom, 1));
+    return { top: share * top, bottom: share * bottom };
+  }
+
   private sees(box: Box3): boolean {
+    const { top, bottom } = this.keptFree();
+    const [highest, lowest] = [1 - (2 * top) / this.height, (2 * bottom) / this.height - 1];
     this.camera.updateMatrixWorld();
     const ends = [box.min, box.max];
     for (let corner = 0; corner < 8; ++corner) {
       const point = new Vector3(ends[corner & 1]!.x, ends[(corner >> 1) & 1]!.y, ends[corner >> 2]!.z).project(this.camera);
-      if (Math.abs(point.x) > 1 || Math.abs(point.y) > 1) return false;
+      if (Math.abs(point.x) > 1 || point.y > highest || point.y < lowest) return false;
     }
     return true;
   }

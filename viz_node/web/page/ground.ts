@@ -6,6 +6,7 @@ import { roundLength } from './format.ts';
 import { COLOUR_FRAGMENT, shapeOf, VertexArray, type Program } from './gl_canvas.ts';
 
 const CELLS = 24; // across the larger side of the scene, about
+const UPRIGHT = 0.5; // of the height of a scene, the least width of the grid under it
 
 /** Vertices that have their colours with them. */
 export const COLOURED: Program = {
@@ -34,7 +35,7 @@ export class Ground {
     const size = box.getSize(new Vector3());
     const centre = box.getCenter(new Vector3());
     const flat = space < 3;
-    const across = Math.max(size.x, flat ? size.y : size.z, 1e-6);
+    const across = Math.max(size.x, flat ? size.y : size.z, UPRIGHT * size.y, 1e-6);
     const cell = roundLength((2 * across) / CELLS);
     const half = Math.ceil((flat ? 3 : 1) * (across / cell)) * cell;
     const middle = [Math.round(centre.x / cell) * cell, Math.round((flat ? centre.y : centre.z) / cell) * cell] as const;

@@ -3,7 +3,9 @@ import type uPlot from 'uplot';
 import { ofList, type Palette } from './colours.ts';
 import { joined, prefixOf, threeDigits, withUnit } from './format.ts';
 
-const VALUES_PX = 72; // room for the labels of values, the same in all plots so that their times stand below each other
+const VALUES_PX = 72; // least room for the labels of values
+const LETTER_PX = 7;
+const SHORT_UNIT = 4; // letters for which that is enough
 const MOST_DECADES = 6; // below the largest value
 const LABELLED_DECADES = 4;
 export const AXIS_FONT = '11px system-ui, "DejaVu Sans", sans-serif';
@@ -12,11 +14,15 @@ export interface PlotLook {
   unit: string;
   seriesCount: number;
   palette: Palette;
+  valuesPx: number; // room for the labels of values, the same in all plots so that their times stand below each other
   logarithmic: boolean;
   pointed: () => void; // the pointer is elsewhere, or has left
 }
 
-export function optionsOf({ unit, seriesCount, palette, logarithmic, pointed }: PlotLook): uPlot.Options {
+/** Room for labels of values with any of these units. */
+export const valuesPxOf = (units: string[]): number => VALUES_PX + LETTER_PX * Math.max(0, ...units.map(({ length }) => length - SHORT_UNIT));
+
+export function optionsOf({ unit, seriesCount, palette, valuesPx, logarithmic, pointed }: PlotLook): uPlot.Options {
   const lines = { stroke: palette.grid_coarse, width: 1 };
   const axis = { stroke: palette.quiet, font: AXIS_FONT, grid: lines, ticks: { ...lines, size: 4 } };
   const values: uPlot.Scale = logarithmic
@@ -35,7 +41,7 @@ export function optionsOf({ unit, seriesCount, palette, logarithmic, pointed }: 
     scales: { x: { time: false, auto: false }, y: values },
     axes: [
       { ...axis, size: 22, space: 50, splits: (_chart, _axis, low, high, step) => withEnds(low, high, step, 1), values: (_chart, ticks) => timeLabels(ticks) },
-      { ...axis, size: VALUES_PX, space: 26, ...valueAxis },
+      { ...axis, size: valuesPx, space: 26, ...valueAxis },
     ],
     series: [
       {},

@@ -3,7 +3,7 @@
 import uPlot from 'uplot';
 import { ofList, paletteOf, type Palette } from './colours.ts';
 import { joined, withUnit } from './format.ts';
-import { optionsOf } from './plot_options.ts';
+import { optionsOf, valuesPxOf } from './plot_options.ts';
 import type { Description } from './protocol.ts';
 import { LONGEST_WINDOW_S, SignalStore } from './signal_store.ts';
 
@@ -154,7 +154,8 @@ export class Plots {
     box.append(head, canvas);
     this.container.append(box);
     const pointed = () => this.writeValues(plot);
-    const look = { unit, seriesCount: group.length, palette: this.palette, logarithmic: this.isLogarithmic, pointed };
+    const valuesPx = valuesPxOf([...this.chosen].map((signal) => signals[signal]!.unit));
+    const look = { unit, seriesCount: group.length, palette: this.palette, valuesPx, logarithmic: this.isLogarithmic, pointed };
     const plot: Plot = { chart: new uPlot(optionsOf(look), [[]], canvas), box: canvas, pointedTime, signals: group, values, shown: [[]], unit };
     return plot;
   }

@@ -17,7 +17,7 @@ import { LINK_IS_IDLE, MAT_FIXED } from './wire.ts';
 import type { Quality } from './quality.ts';
 import { boundsWith } from './surface_shape.ts';
 import { SurfaceView } from './surfaces.ts';
-import { CameraRig, type Pose } from './camera_rig.ts';
+import { CameraRig, type Edges, type Pose } from './camera_rig.ts';
 
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
@@ -76,7 +76,7 @@ export class SceneView {
     });
     this.canvas.clearTo(sharesOf(palette.background));
     container.prepend(this.canvas.element);
-    this.rig = new CameraRig(this.canvas.element, space, changed);
+    this.rig = new CameraRig(this.canvas.element, space, () => this.edges(), changed);
 
     const coordinates = 3 * topology.matCount;
     this.newest = new VertexArray(new Float32Array(coordinates), 3);
@@ -154,6 +154,15 @@ export class SceneView {
     this.canvas.resize(clientWidth, clientHeight);
     this.rig.resize(clientWidth, clientHeight);
     this.changed();
+  }
+
+  /** Legend and buttons above, tools below: a scene that is fitted stands between them. */
+  private edges(): Edges {
+    const stage = this.container.getBoundingClientRect();
+    const boxes = (selector: string) => [...this.container.querySelectorAll(selector)].map((one) => one.getBoundingClientRect()).filter(({ height }) => height > 0);
+    const top = boxes('#legend, #control').map((box) => box.bottom - stage.top);
+    const bottom = boxes('#tools').map((box) => stage.bottom - box.top);
+    return { top: Math.max(0, ...top), bottom: Math.max(0, ...bottom) };
   }
 
   fit(): void {

@@ -2,7 +2,7 @@
 import uPlot from 'uplot';
 import { ofList, type Palette } from './colours.ts';
 import { joined, withUnit } from './format.ts';
-import { optionsOf } from './plot_options.ts';
+import { optionsOf, valuesPxOf } from './plot_options.ts';
 import { LONGEST_WINDOW_S } from './signal_store.ts';
 
 const MOST_TRACES = 4; // the oldest goes
@@ -52,7 +52,7 @@ class Trace {
       this.head.lastElementChild!.before(label);
       return figure;
     });
-    const look = { unit: this.traced.unit, seriesCount: this.rows.length, palette, logarithmic: false, pointed: () => this.writeFigures() };
+    const look = { unit: this.traced.unit, seriesCount: this.rows.length, palette, valuesPx: valuesPxOf([this.traced.unit]), logarithmic: false, pointed: () => this.writeFigures() };
     this.chart = new uPlot(optionsOf(look), [[]], this.canvas);
   }
 
