@@ -24,6 +24,7 @@ class LinkList : public Canvas {
   void end_view() override {}
   void fill(const Rectangle&, const Colour&) override {}
   void ball(const Place&, double, const Colour&) override {}
+  void torus(const Place&, double, double, const Colour&) override {}
   void ring(const Place&, double, double, const Colour&) override {}
   void link(const Place& from, const Place& to, double width, const Colour&) override {
     drawn.push_back({from, to, width});

@@ -101,7 +101,7 @@ TEST(SceneColours, OfTheSceneStandBeforeThoseOfBodiesAndAreNamed) {
                                       "bob " + hex_of(readable(kGivenBlue, palette)),
                                       "wall " + hex_of(readable(kGivenBlue, palette))}));
   EXPECT_EQ(painter.bodies().back().mark, MatterMark::kFixed);
-  EXPECT_FALSE(painter.has_fixed()) << "the wall has a colour of its own";
+  EXPECT_FALSE(painter.has_fixed_balls()) << "the wall has a colour of its own";
 }
 
 TEST(SceneColours, AreDrawn) {
@@ -130,14 +130,16 @@ TEST(SceneColours, OfASurfaceAreThoseOfItsFaces) {
 
 TEST(LinkPatterns, AreOfScenesWithSeveralLiaisonsTheMostFrequentSolid) {
   msg::SceneDescription description = two_copies();
-  EXPECT_TRUE(ScenePainter(description, Theme::kDark).link_groups().empty());
+  EXPECT_EQ(ScenePainter(description, Theme::kDark).link_groups().size(), 1u);
   msg::StateMachineDescription glue;
   glue.name("glue");
+  glue.states({"sticks", "loose"});
   msg::StateMachineDescription hook;
   hook.name("hook");
+  hook.states({"holds"});
   description.state_machines({glue, hook});
   description.link_state_machine({0, 0, 0, 0});
-  EXPECT_TRUE(ScenePainter(description, Theme::kDark).link_groups().empty());
+  EXPECT_EQ(ScenePainter(description, Theme::kDark).link_groups().size(), 1u);
   const std::size_t solid_lines = count_of(svg_of(description), "L");
 
   description.link_state_machine({1, 1, 0, msg::NO_INDEX});
@@ -151,8 +153,43 @@ TEST(LinkPatterns, AreOfScenesWithSeveralLiaisonsTheMostFrequentSolid) {
   EXPECT_EQ(painter.link_groups()[2].pattern, LinePattern::kDotted);
   const std::string svg = svg_of(description);
   EXPECT_GT(count_of(svg, "L"), solid_lines + 20) << "dashes and dots";
-  for (const char* name : {">hook<", ">glue<", ">links without states<"})
+  for (const char* name :
+       {">link, hook: holds<", ">glue: sticks<", ">glue: loose<", ">without states<"})
     EXPECT_NE(svg.find(name), std::string::npos) << name;
+}
+
+TEST(LinkPatterns, AreOneForALiaisonWhateverItsParameters) {
+  msg::SceneDescription description = two_copies();
+  msg::StateMachineDescription glue;
+  glue.name("glue");
+  glue.states({"sticks", "loose"});
+  msg::StateMachineDescription hook;
+  hook.name("hook");
+  hook.states({"holds"});
+  description.state_machines({hook, glue, glue, glue});
+  description.link_state_machine({0, 1, 2, 3});
+  const ScenePainter painter(description, Theme::kDark);
+  ASSERT_EQ(painter.link_groups().size(), 2u);
+  EXPECT_EQ(painter.link_groups()[0].name, "glue");
+  EXPECT_EQ(painter.link_groups()[1].name, "hook");
+}
+
+TEST(HeldTools, AreRingsOfTheirTrueSizeAndNamed) {
+  msg::SceneDescription description = two_copies();
+  description.mat_kind()[5] = msg::MAT_PORT;
+  msg::PortDescription port;
+  port.name("bob");
+  port.mat(5);
+  description.ports({port});
+  const std::string svg = svg_of(description);
+  EXPECT_EQ(count_of(svg, "class=\"torus\""), 2u) << "the tool, and its mark in the legend";
+  EXPECT_NE(svg.find(">tool that it holds, in true size<"), std::string::npos);
+  EXPECT_NE(svg.find(">handle of a device<"), std::string::npos);
+
+  description.mat_radius_m()[4] = 0.0F;
+  const std::string punctual = svg_of(description);
+  EXPECT_EQ(count_of(punctual, "class=\"torus\""), 0u);
+  EXPECT_NE(punctual.find(">tool that it holds<"), std::string::npos);
 }
 
 }  // namespace

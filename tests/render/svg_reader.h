@@ -9,7 +9,7 @@
 
 namespace cordis::test {
 
-/// A view of a chronogram: its time, its scale, and the middles of its balls [pixels].
+/// A view of a chronogram: its time, its scale, and the middles of its balls and held rings [pixels].
 struct SvgView {
   double time_s = 0.0;
   double metres_per_pixel = 0.0;
@@ -20,7 +20,7 @@ struct SvgView {
 inline std::vector<SvgView> views_of(const std::string& svg) {
   std::vector<SvgView> views;
   const std::regex element(
-      R"re(data-time-s="([^"]+)" data-metres-per-pixel="([^"]+)"|<circle cx="([^"]+)" cy="([^"]+)"|(</svg>|<text|<polyline))re");
+      R"re(data-time-s="([^"]+)" data-metres-per-pixel="([^"]+)"|<circle (?:class="torus" )?cx="([^"]+)" cy="([^"]+)"|(</svg>|<text|<polyline))re");
   bool is_inside = false;
   for (auto match = std::sregex_iterator(svg.begin(), svg.end(), element);
        match != std::sregex_iterator(); ++match) {

@@ -47,6 +47,8 @@ class Canvas {
   virtual void fill(const Rectangle& area, const Colour& colour) = 0;
   /// A lit sphere.
   virtual void ball(const Place& centre, double radius, const Colour& colour) = 0;
+  /// A ring in depth, as thimbles are. @param hole  radius of its hole, a share of its own, 0..1
+  virtual void torus(const Place& centre, double radius, double hole, const Colour& colour) = 0;
   /// A circle, of which the line alone is drawn.
   virtual void ring(const Place& centre, double radius, double width, const Colour& colour) = 0;
   /// A straight line in depth.

@@ -20,7 +20,7 @@ constexpr double kSide = 16.0;      // free around a figure [pixels of 1200]
 constexpr double kHead = 46.0;      // of the name
 constexpr double kLabel = 26.0;     // of a time, below its view
 constexpr double kGap = 10.0;       // between views
-constexpr double kFoot = 34.0;      // of ruler and legend
+constexpr double kFoot = 50.0;      // of ruler and legend
 constexpr double kFaintest = 0.22;  // of the first moment of an overlay
 
 /// Columns of a grid, so that its rows are full where that is possible and it is wider than high.

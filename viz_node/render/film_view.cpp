@@ -15,7 +15,7 @@ constexpr double kMaxGrowth = 4.0;  // times the size of a scene at first, up to
                                     // followed
 constexpr double kEase = 0.15;      // of the way to the wanted box, per frame
 constexpr double kFilmTop = 54.0;   // kept free of the scene [pixels of 720]
-constexpr double kFilmBottom = 46.0;
+constexpr double kFilmBottom = 58.0;
 constexpr double kFilmSide = 22.0;
 
 }  // namespace

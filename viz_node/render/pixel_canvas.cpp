@@ -330,6 +330,32 @@ void PixelCanvas::ball(const Place& centre, double radius, const Colour& colour)
   }
 }
 
+/// Lit like a round bar that is bent to a circle.
+void PixelCanvas::torus(const Place& centre, double radius, double hole, const Colour& colour) {
+  const LightTable& table = lights();
+  const Window within = window(centre.x - radius - 1.0, centre.y - radius - 1.0,
+                               centre.x + radius + 1.0, centre.y + radius + 1.0);
+  const auto middle = static_cast<float>(0.5 * (1.0 + hole) * radius);
+  const auto half = static_cast<float>(0.5 * (1.0 - hole) * radius);
+  for (int y = within.top; y < within.bottom; ++y) {
+    const float down = static_cast<float>(y) + 0.5f - static_cast<float>(centre.y);
+    for (int x = within.left; x < within.right; ++x) {
+      const float across = static_cast<float>(x) + 0.5f - static_cast<float>(centre.x);
+      const float away = std::sqrt(across * across + down * down);
+      const float beside = away - middle;
+      const float share = half + 0.5f - std::abs(beside);
+      if (share <= 0.0f) continue;
+      // Where the light falls on a ball of the same slope.
+      const float slope = std::clamp(beside / half, -1.0f, 1.0f) / std::max(away, 1e-6f);
+      const float to_cell = 0.5f * kLightSize * slope;
+      const std::size_t row =
+          static_cast<std::size_t>(cell_of(to_cell * down + 0.5f * kLightSize)) * kLightSize;
+      const Light& light = table[row + cell_of(to_cell * across + 0.5f * kLightSize)];
+      blend_deep(x, y, lit(colour, light), std::min(share, 1.0f), static_cast<float>(centre.z));
+    }
+  }
+}
+
 void PixelCanvas::ring(const Place& centre, double radius, double width, const Colour& colour) {
   const double reach = radius + 0.5 * width + 1.0;
   const Window within =

@@ -25,6 +25,7 @@ class PixelCanvas final : public Canvas {
   void end_view() override;
   void fill(const Rectangle& area, const Colour& colour) override;
   void ball(const Place& centre, double radius, const Colour& colour) override;
+  void torus(const Place& centre, double radius, double hole, const Colour& colour) override;
   void ring(const Place& centre, double radius, double width, const Colour& colour) override;
   void link(const Place& from, const Place& to, double width, const Colour& colour) override;
   void polygon(const std::vector<Corner>& corners, const Colour& colour) override;

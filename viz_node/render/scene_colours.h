@@ -12,7 +12,7 @@
 namespace cordis::viz {
 
 /// What a legend draws before a name.
-enum class MatterMark : std::uint8_t { kMass, kFixed, kSurface };
+enum class MatterMark : std::uint8_t { kMass, kFixed, kFixedPoint, kSurface };
 
 /// Matter that looks alike: a body, or a part of it that has a colour of its own.
 struct Body {

@@ -18,12 +18,17 @@ namespace {
 constexpr std::size_t kFewMats = 3000;  // which are drawn larger than they are, to be seen
 constexpr double kFade = 0.985;         // of the fastest speed, per frame
 constexpr double kGridCells = 24.0;     // across the larger side of the scene, about
+constexpr double kUpright = 0.5;        // of the height of a scene, the least width of its grid
 constexpr double kEdgeShare = 0.35;     // of the colour of texts in the edge of a coloured surface
+constexpr double kHole = 0.76;          // of a ring that is held, a share of its radius
 constexpr double kRingGap = 1.7;        // radius of the ring of a port, in radii of its ball
 
 /// Smallest radii by look [pixels].
-constexpr std::array<double, 6> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2, 0.0};
-constexpr std::array<double, 6> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2, 0.0};
+constexpr std::array<double, 7> kFewSizes = {3.2, 3.2, 6.0, 5.0, 3.2, 0.0, 3.2};
+constexpr std::array<double, 7> kManySizes = {1.2, 1.2, 5.0, 2.0, 1.2, 0.0, 1.2};
+
+/// Name of a liaison and names of its states: links for which they are equal look alike.
+using GroupKey = std::pair<std::string, std::vector<std::string>>;
 
 Point point_of(const msg::SceneFrame& frame, std::size_t mat) noexcept {
   const float* position = frame.position_m().data() + 3 * mat;
@@ -83,16 +88,22 @@ void ScenePainter::find_looks(const msg::SceneDescription& description) {
                                              : Look::kFixedBall);
   }
   for (const msg::NamedRange& range : description.matter()) {
-    if (is_tool(description, range)) look_[range.first()] = Look::kTool;
+    if (is_tool(description, range)) {
+      const bool is_ring = radius_[range.first()] != 0.0f;
+      look_[range.first()] = is_ring ? Look::kRing : Look::kTool;
+      (is_ring ? has_rings_ : has_punctual_tools_) = true;
+    }
     if (is_surface(description, range)) look_[range.first()] = Look::kSurface;
   }
   // A port of role liaison plays a mass.
   for (const msg::PortDescription& port : description.ports()) {
     if (look_[port.mat()] == Look::kMass) look_[port.mat()] = Look::kTool;
   }
-  for (std::size_t mat = 0; mat < look_.size() && !has_fixed_; ++mat)
-    has_fixed_ = (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint) &&
-                 !colours_.wanted(mat);
+  for (std::size_t mat = 0; mat < look_.size(); ++mat) {
+    if (colours_.wanted(mat)) continue;
+    has_fixed_points_ = has_fixed_points_ || look_[mat] == Look::kFixedPoint;
+    has_fixed_balls_ = has_fixed_balls_ || look_[mat] == Look::kFixedBall;
+  }
   has_ports_ = !description.ports().empty();
 }
 
@@ -131,7 +142,8 @@ void ScenePainter::find_coloured_parts(const msg::SceneDescription& description)
     const std::uint32_t mat = range.first();
     const bool is_fixed = look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint;
     if (const std::optional<Colour> colour = colours_.wanted(mat); is_fixed && colour)
-      name_fixed({body_name(range.name()), *colour, MatterMark::kFixed});
+      name_fixed({body_name(range.name()), *colour,
+                  look_[mat] == Look::kFixedPoint ? MatterMark::kFixedPoint : MatterMark::kFixed});
   }
 }
 
@@ -155,22 +167,34 @@ void ScenePainter::find_coloured_surfaces(const msg::SceneDescription& descripti
 
 void ScenePainter::find_patterns(const msg::SceneDescription& description) {
   const std::vector<std::uint32_t>& machines = description.link_state_machine();
-  std::map<std::uint32_t, std::size_t> counts;
-  for (const std::uint32_t machine : machines) ++counts[machine];
-  if (counts.size() < 2) return;
-  std::vector<std::uint32_t> order;
-  for (const auto& [machine, count] : counts) order.push_back(machine);
-  std::ranges::stable_sort(order, std::greater(),
-                           [&counts](std::uint32_t machine) { return counts[machine]; });
-  std::map<std::uint32_t, LinePattern> patterns;
-  for (const std::uint32_t machine : order) {
-    const auto pattern = static_cast<LinePattern>(std::min(patterns.size(), kLinePatternCount - 1));
-    patterns[machine] = pattern;
-    const bool has_states = machine < description.state_machines().size();
-    link_groups_.push_back(
-        {has_states ? description.state_machines()[machine].name() : std::string(), pattern});
+  if (machines.empty() && !link_ends_.empty()) link_groups_.push_back({});
+  // One liaison with other parameters for some of its links is several state machines of one name.
+  const auto key_of = [&description](std::uint32_t machine) {
+    if (machine >= description.state_machines().size()) return GroupKey();
+    const msg::StateMachineDescription& described = description.state_machines()[machine];
+    return GroupKey(described.name(), described.states());
+  };
+  std::map<GroupKey, std::size_t> counts;
+  std::map<std::uint32_t, GroupKey> keys;
+  for (const std::uint32_t machine : machines) {
+    const auto [found, is_new] = keys.try_emplace(machine);
+    if (is_new) found->second = key_of(machine);
+    ++counts[found->second];
   }
-  for (const std::uint32_t machine : machines) link_pattern_.push_back(patterns[machine]);
+  std::vector<GroupKey> order;  // by the first state machines
+  for (const auto& [machine, key] : keys) {
+    if (std::ranges::find(order, key) == order.end()) order.push_back(key);
+  }
+  std::ranges::stable_sort(order, std::greater(),
+                           [&counts](const GroupKey& key) { return counts[key]; });
+  std::map<GroupKey, LinePattern> patterns;
+  for (const GroupKey& key : order) {
+    const auto pattern = static_cast<LinePattern>(std::min(patterns.size(), kLinePatternCount - 1));
+    patterns[key] = pattern;
+    link_groups_.push_back({key.first, key.second, pattern});
+  }
+  if (order.size() < 2) return;
+  for (const std::uint32_t machine : machines) link_pattern_.push_back(patterns[keys[machine]]);
 }
 
 void ScenePainter::start(const msg::SceneFrame& frame) {
@@ -286,6 +310,10 @@ void ScenePainter::draw_ball(Canvas& canvas, const ViewOptions& options, std::si
       place.y + reach < area.y || place.y - reach > area.y + area.height)
     return;
   const Colour colour = colour_of(mat, options.strength);
+  if (look_[mat] == Look::kRing) {
+    canvas.torus({place.x, place.y, place.z}, size, kHole, colour);
+    return;
+  }
   if (look_[mat] != Look::kFixedPoint) {
     canvas.ball({place.x, place.y, place.z}, size, colour);
     return;
@@ -326,7 +354,7 @@ void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const V
   const std::size_t second = flat ? 1 : 2;
   const Point size = home.size();
   const Point centre = home.centre();
-  const double across = std::max({size[0], size[second], 1e-6});
+  const double across = std::max({size[0], size[second], kUpright * size[1], 1e-6});
   const double cell = round_length(2.0 * across / kGridCells);
   const double level = flat ? home.low[2] - 0.001 * across : home.low[1] - 0.25 * across;
   const auto half = static_cast<long>(std::ceil((flat ? 3.0 : 1.0) * across / cell));

@@ -19,9 +19,10 @@ namespace cordis::viz {
 /// What the colours of masses say.
 enum class ColourBy : std::uint8_t { kBody, kSpeed };
 
-/// Links of one liaison with states, or those without, where a scene has several such groups.
+/// Links of one liaison with states, whatever their parameters, or those without.
 struct LinkGroup {
-  std::string name;  ///< name of the liaison; empty for links without states
+  std::string name;                 ///< name of the liaison; empty for links without states
+  std::vector<std::string> states;  ///< names; empty for links without states
   LinePattern pattern = LinePattern::kSolid;
 };
 
@@ -63,10 +64,13 @@ class ScenePainter {
   /// The bodies that have masses, and what else has a colour of its own. Bodies after the last colour
   /// have the first again.
   const std::vector<Body>& bodies() const noexcept { return bodies_; }
-  /// What each pattern of links is, the most frequent first; empty where all are of one kind.
+  /// What each pattern of links is, the most frequent first; empty where there are no links.
   const std::vector<LinkGroup>& link_groups() const noexcept { return link_groups_; }
-  bool has_fixed() const noexcept { return has_fixed_; }  ///< without a colour of its own
+  bool has_fixed_points() const noexcept { return has_fixed_points_; }  ///< without a colour
+  bool has_fixed_balls() const noexcept { return has_fixed_balls_; }    ///< likewise
   bool has_ports() const noexcept { return has_ports_; }
+  bool has_rings() const noexcept { return has_rings_; }  ///< tools with a radius
+  bool has_punctual_tools() const noexcept { return has_punctual_tools_; }
   bool has_surfaces() const noexcept { return has_plain_surfaces_; }  ///< likewise
   const Palette& palette() const noexcept { return palette_; }
   /// The speed that has the last colour [m/s]; 0 before two frames were drawn.
@@ -74,7 +78,7 @@ class ScenePainter {
 
  private:
   /// How a MAT is drawn.
-  enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool, kSurface };
+  enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool, kSurface, kRing };
   /// A ball or a link on its way from back to front.
   struct Mark {
     std::size_t layer;  // of surfaces that it is between
@@ -120,7 +124,10 @@ class ScenePainter {
   std::vector<SurfaceColours> surface_colours_;  // per surface
   bool has_plain_surfaces_ = false;
   bool has_planes_ = false;
-  bool has_fixed_ = false;
+  bool has_fixed_points_ = false;
+  bool has_fixed_balls_ = false;
+  bool has_rings_ = false;
+  bool has_punctual_tools_ = false;
   bool has_ports_ = false;
   ColourBy colour_by_ = ColourBy::kBody;
   std::vector<float> before_;     // positions of the frame drawn last

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "viz_node/render/line_pattern.h"
@@ -15,7 +17,10 @@ namespace {
 
 constexpr double kSampleScale = 14.5;  // pixels of a font beside which dashes have their own length
 
-enum class Sign { kBall, kFixed, kPort, kSurface, kLink };
+constexpr double kRowGap = 1.35;       // between two rows, in sizes of the font
+constexpr std::size_t kMaxStates = 3;  // names of states that look alike
+
+enum class Sign { kBall, kFixedPoint, kPort, kRing, kSurface, kLink };
 
 struct Entry {
   Sign sign;
@@ -26,8 +31,9 @@ struct Entry {
 
 Sign sign_of(MatterMark mark) noexcept {
   switch (mark) {
+    case MatterMark::kFixedPoint:
+      return Sign::kFixedPoint;
     case MatterMark::kFixed:
-      return Sign::kFixed;
     case MatterMark::kSurface:
       return Sign::kSurface;
     case MatterMark::kMass:
@@ -36,20 +42,47 @@ Sign sign_of(MatterMark mark) noexcept {
   return Sign::kBall;
 }
 
+/// A colour for each state, a pattern for each liaison where there are several. States that look
+/// alike share an entry.
+void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
+  const std::vector<LinkGroup>& groups = painter.link_groups();
+  const std::vector<Colour>& colours = painter.palette().link_states;
+  std::map<std::pair<LinePattern, std::size_t>, std::vector<std::string>> texts;  // by look
+  for (const LinkGroup& group : groups) {
+    const std::string liaison = groups.size() > 1 ? group.name + ": " : "";
+    for (std::size_t state = 0; state < group.states.size(); ++state)
+      texts[{group.pattern, state % colours.size()}].push_back(liaison + group.states[state]);
+    if (group.states.empty())
+      texts[{group.pattern, 0}].emplace_back(groups.size() > 1 ? "without states" : "");
+  }
+  bool is_first = true;
+  for (const auto& [look, names] : texts) {
+    std::string name = std::exchange(is_first, false) ? "link" : "";
+    for (std::size_t i = 0; i < std::min(names.size(), kMaxStates); ++i) {
+      if (!names[i].empty()) name += (i > 0 ? " or " : name.empty() ? "" : ", ") + names[i];
+    }
+    if (names.size() > kMaxStates) name += " …";
+    entries.push_back({Sign::kLink, name, colours[look.second], look.first});
+  }
+}
+
 std::vector<Entry> entries_of(const ScenePainter& painter) {
   std::vector<Entry> entries;
   const std::size_t colours = painter.palette().bodies.size();
   for (const Body& body : painter.bodies()) {
     if (entries.size() < colours) entries.push_back({sign_of(body.mark), body.name, body.colour});
   }
-  if (painter.has_fixed()) entries.push_back({Sign::kFixed, "fixed", painter.palette().fixed});
-  if (painter.has_ports()) entries.push_back({Sign::kPort, "port", painter.palette().port});
-  if (painter.has_surfaces())
-    entries.push_back({Sign::kSurface, "surface", painter.palette().surface});
-  for (const LinkGroup& group : painter.link_groups()) {
-    const std::string name = group.name.empty() ? "links without states" : group.name;
-    entries.push_back({Sign::kLink, name, painter.palette().quiet, group.pattern});
-  }
+  const Palette& palette = painter.palette();
+  if (painter.has_fixed_points())
+    entries.push_back({Sign::kFixedPoint, "fixed point", palette.fixed});
+  if (painter.has_fixed_balls()) entries.push_back({Sign::kBall, "fixed ball", palette.fixed});
+  if (painter.has_ports()) entries.push_back({Sign::kPort, "handle of a device", palette.port});
+  if (painter.has_rings())
+    entries.push_back({Sign::kRing, "tool that it holds, in true size", palette.port});
+  if (painter.has_punctual_tools())
+    entries.push_back({Sign::kBall, "tool that it holds", palette.port});
+  if (painter.has_surfaces()) entries.push_back({Sign::kSurface, "surface", palette.surface});
+  add_links(painter, entries);
   return entries;
 }
 
@@ -65,6 +98,15 @@ void draw_slab(Canvas& canvas, const Palette& palette, const Colour& colour, con
               0.2 * half, palette.surface_edge);
 }
 
+/// A fixed point, as in a view.
+void draw_square(Canvas& canvas, const Palette& palette, const Colour& colour, const Place& centre,
+                 double half) {
+  canvas.fill({centre.x - half, centre.y - half, 2.0 * half, 2.0 * half}, colour);
+  const double inside = 0.62 * half;
+  canvas.fill({centre.x - inside, centre.y - inside, 2.0 * inside, 2.0 * inside},
+              mix(palette.background, colour, 0.35));
+}
+
 /// A piece of a link.
 void draw_sample(Canvas& canvas, LinePattern pattern, const Colour& colour, const Place& centre,
                  double size) {
@@ -75,26 +117,56 @@ void draw_sample(Canvas& canvas, LinePattern pattern, const Colour& colour, cons
   draw_line(canvas, area, {from, to, 0.1 * size, pattern, size / kSampleScale}, colour);
 }
 
+/// What stands before a name.
+void draw_sign(Canvas& canvas, const Palette& palette, const Entry& entry, const Place& centre,
+               double size) {
+  const double radius = 0.36 * size;
+  switch (entry.sign) {
+    case Sign::kSurface:
+      return draw_slab(canvas, palette, entry.colour, centre, radius);
+    case Sign::kLink:
+      return draw_sample(canvas, entry.pattern, entry.colour, centre, size);
+    case Sign::kRing:
+      return canvas.torus(centre, 1.2 * radius, 0.6, entry.colour);
+    case Sign::kFixedPoint:
+      return draw_square(canvas, palette, entry.colour, centre, 0.9 * radius);
+    case Sign::kPort:
+      canvas.ball(centre, 0.75 * radius, entry.colour);
+      return canvas.ring(centre, 1.3 * radius, 0.1 * size, entry.colour);
+    case Sign::kBall:
+      return canvas.ball(centre, radius, entry.colour);
+  }
+}
+
 }  // namespace
 
 void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, double size,
                  double width) {
-  const double radius = 0.36 * size;
+  struct Item {
+    Entry entry;
+    double x;
+    int row;
+  };
+  std::vector<Item> items;
   double x = at.x;
+  int row = 0;
   for (const Entry& entry : entries_of(painter)) {
-    const double length = text_width(entry.name, size);
-    if (x + 1.4 * size + length > at.x + width) return;
-    const Place centre{x + 0.5 * size, at.y - 0.36 * size, 0.0};
-    if (entry.sign == Sign::kSurface)
-      draw_slab(canvas, painter.palette(), entry.colour, centre, radius);
-    else if (entry.sign == Sign::kLink)
-      draw_sample(canvas, entry.pattern, entry.colour, centre, size);
-    else
-      canvas.ball(centre, entry.sign == Sign::kPort ? 0.75 * radius : radius, entry.colour);
-    if (entry.sign == Sign::kPort) canvas.ring(centre, 1.3 * radius, 0.1 * size, entry.colour);
-    canvas.text({x + 1.3 * size, at.y, 0.0}, size, Anchor::kStart, painter.palette().quiet,
-                entry.name);
-    x += 1.3 * size + length + 1.2 * size;
+    const double length = 1.4 * size + text_width(entry.name, size);
+    if (x > at.x && x + length > at.x + width) {
+      x = at.x;
+      ++row;
+    }
+    if (row == kLegendRows || x + length > at.x + width) break;
+    items.push_back({entry, x, row});
+    x += length + 1.1 * size;
+  }
+  const int last = items.empty() ? 0 : items.back().row;
+  for (const Item& item : items) {
+    const double y = at.y - kRowGap * size * (last - item.row);
+    draw_sign(canvas, painter.palette(), item.entry, {item.x + 0.5 * size, y - 0.36 * size, 0.0},
+              size);
+    canvas.text({item.x + 1.3 * size, y, 0.0}, size, Anchor::kStart, painter.palette().quiet,
+                item.entry.name);
   }
 }
 

@@ -6,8 +6,11 @@
 
 namespace cordis::viz {
 
-/// Draws the legend of bodies, fixed points and ports in one row, as many as there is room for.
-/// @param at     the left end of the row, on its base line
+inline constexpr int kLegendRows = 2;  ///< at most
+
+/// Draws the legend of bodies, fixed points, ports and links, in rows one above the other, as many
+/// entries as there is room for.
+/// @param at     the left end of the lowest row, on its base line
 /// @param size   of the font [pixels]
 /// @param width  of the row [pixels]
 void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, double size,

@@ -136,6 +136,15 @@ void SvgCanvas::ball(const Place& centre, double radius, const Colour& colour) {
                        place_text(centre.y), place_text(radius));
 }
 
+void SvgCanvas::torus(const Place& centre, double radius, double hole, const Colour& colour) {
+  close();
+  body_ += fmt::format(
+      "<circle class=\"torus\" cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"none\" stroke=\"{}\" "
+      "stroke-width=\"{}\"/>\n",
+      place_text(centre.x), place_text(centre.y), place_text(0.5 * (1.0 + hole) * radius),
+      hex_of(colour), place_text((1.0 - hole) * radius));
+}
+
 void SvgCanvas::ring(const Place& centre, double radius, double width, const Colour& colour) {
   close();
   body_ += fmt::format(
@@ -303,6 +312,10 @@ void PdfCanvas::ball(const Place& centre, double radius, const Colour& colour) {
       lights_.try_emplace(hex_of(colour), static_cast<int>(lights_.size()));
   body_ += fmt::format("q {0} 0 0 {0} {1} {2} cm /B{3} sh Q\n", place_text(radius),
                        place_text(centre.x), place_text(centre.y), found->second);
+}
+
+void PdfCanvas::torus(const Place& centre, double radius, double hole, const Colour& colour) {
+  ring(centre, 0.5 * (1.0 + hole) * radius, (1.0 - hole) * radius, colour);
 }
 
 void PdfCanvas::ring(const Place& centre, double radius, double width, const Colour& colour) {
