@@ -232,6 +232,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
     stability.diverging_step = diverging_step_of(network);
   }
   stability.bounded = graph.bounded;
+  stability.turning = graph.turning;
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
   stability.uncertainty = uncertainty_of(network, graph);

@@ -28,6 +28,7 @@ struct Stability {
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
   std::optional<Uncertainty> uncertainty;  ///< what keeps every step from being certain
+  Turning turning;                         ///< what may gain energy below every certified step
 
   bool holds() const noexcept { return step < certified.step && !uncertainty; }
   bool diverges() const noexcept { return step > diverging_step; }
