@@ -71,8 +71,9 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
      {"sim_node/plan/", "sim_node/scene/", "sim_node/engine/", "node/config/"}},
     {"sim_node/plan/", {"sim_node/plan/", "sim_node/engine/"}},
     {"node/config/", {"node/config/"}},
-    // The two clocks of node/ include nothing.
-    {"node/dds/", {"node/dds/", "idl/", "node/time.h", "node/processor_time.h"}},
+    // The two clocks of node/ and the priority of a thread include nothing.
+    {"node/dds/",
+     {"node/dds/", "idl/", "node/time.h", "node/processor_time.h", "node/inherited_priority.h"}},
     {"node/", {"node/", "idl/"}},
     {"sim_node/scene_file.cpp", {"cordis/", "sim_node/", "node/config/"}},
     {"sim_node/", {"sim_node/", "node/", "idl/"}},
@@ -154,7 +155,8 @@ const std::vector<std::vector<std::vector<std::string>>> kFloors = {
      {"sim_node/devices/"},
      {"sim_node/run/"},
      {"sim_node/"}},
-    {{"node/config/", "node/dds/", "node/time.", "node/processor_time.", "node/assert."},
+    {{"node/config/", "node/dds/", "node/time.", "node/processor_time.", "node/inherited_priority.",
+      "node/assert."},
      {"node/"},
      {"node/machine/"}},
     {{"device_node/axis.", "device_node/passivity_observer.", "device_node/force_guard."},
