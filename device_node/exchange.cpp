@@ -16,6 +16,7 @@ Exchange::Exchange(const Setup& setup)
       channel_(setup.channel),
       meter_(setup.meter),
       clock_(setup.clock),
+      repeat_nsec_(setup.repeat_nsec),
       stalls_(setup.since_boot != nullptr ? setup.since_boot : setup.clock, config_.layout.rate_hz),
       force_guard_(config_.force_guard),
       position_guard_(config_.position_guard),
@@ -70,6 +71,12 @@ void Exchange::set_time_scale(double scale) noexcept {
   time_scale_ = scale;
   age_scale_ = std::min(age_scale_, scale);
   paced_from_ = sample_.sample + 1;
+}
+
+/// DDS gives the port to a standby 20 ms after a sample, whatever the scale.
+void Exchange::hold_port() noexcept {
+  const bool has_sent = sample_.sample >= paced_from_;
+  if (repeat_nsec_ > 0 && time_scale_ < 1.0 && present_ && has_sent) repeat_sample();
 }
 
 /// Simulated time since a moment of the clock.
@@ -231,8 +238,14 @@ void Exchange::apply_answers_until(std::int64_t nsec) noexcept {
   GestureMessage answer;
   while (!is_answered()) {
     const std::int64_t left = std::max<std::int64_t>(nsec - clock_(), 0);
-    if (!channel_.receive(answer, std::chrono::nanoseconds(left))) return;
-    if (consider(answer)) apply();
+    const bool repeats = repeat_nsec_ > 0 && time_scale_ < 1.0 && left > repeat_nsec_;
+    if (channel_.receive(answer, std::chrono::nanoseconds(repeats ? repeat_nsec_ : left))) {
+      if (consider(answer)) apply();
+    } else if (repeats) {
+      hold_port();
+    } else {
+      return;
+    }
   }
 }
 

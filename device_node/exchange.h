@@ -54,6 +54,8 @@ class Exchange {
     ClockFunction clock;
     /// A clock that goes on while the machine sleeps; nullptr: `clock`, which stops.
     ClockFunction since_boot = nullptr;
+    /// After which slow motion repeats the sample, so that no standby takes over; 0: never.
+    std::int64_t repeat_nsec = 0;
   };
 
   /// Starts the driver in the role.
@@ -83,6 +85,9 @@ class Exchange {
   /// Until the scene answers a sample of the new pace, the slower of the two counts.
   /// Precondition: scale is 1, or between 0 and 1 and there are no motors.
   void set_time_scale(double scale) noexcept;
+
+  /// In slow motion, between two periods: sends the sample again where it is to be repeated.
+  void hold_port() noexcept;
 
   /// Real time: plays a period from its beginning on, until its answer is at the motors, or
   /// kAnswerShare of it are over.
@@ -146,6 +151,7 @@ class Exchange {
   GestureChannel& channel_;
   LoopMeter& meter_;
   ClockFunction clock_;
+  const std::int64_t repeat_nsec_;
   StallWatch stalls_;
   ForceGuard force_guard_;
   PositionGuard position_guard_;

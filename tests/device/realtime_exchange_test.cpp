@@ -124,7 +124,7 @@ DeviceConfig prompt_config() {
 
 /// An exchange, and what answers it: the sample of each period in so many nanoseconds; below 0 never.
 struct PromptRig {
-  explicit PromptRig(Role role = Role::kMass)
+  explicit PromptRig(Role role = Role::kMass, std::int64_t repeat_nsec = 0)
       : exchange({.config = config,
                   .driver = driver,
                   .channel = channel,
@@ -132,7 +132,8 @@ struct PromptRig {
                   .role = role,
                   .series = {77, 0},
                   .lockstep = false,
-                  .clock = &time_now}) {}
+                  .clock = &time_now,
+                  .repeat_nsec = repeat_nsec}) {}
 
   /// Slow motion: periods are so many times longer.
   void slow_down(int times) {
@@ -214,6 +215,34 @@ TEST(RealtimeExchange, InSlowMotionAgesCountInSimulatedTime) {
   for (int i = 0; i < 40; ++i) rig.period(3.0, -1);
   EXPECT_EQ(rig.driver.commands.back().value, 0.0) << "a scene that is silent is still noticed";
   EXPECT_EQ(rig.meter.phase(), Phase::kLost);
+}
+
+/// A standby takes over 20 ms after a sample.
+TEST(RealtimeExchange, InSlowMotionRepeatsItsSampleWhereAStandbyWouldTakeOver) {
+  constexpr std::int64_t kRepeat = 5'000'000;
+  time_nsec = 1'000'000'000;
+  PromptRig rig(Role::kMass, kRepeat);
+  rig.period(3.0, 120'000);
+  rig.exchange.hold_port();
+  EXPECT_EQ(rig.channel.sent.size(), 1u) << "not in real time";
+
+  rig.slow_down(100);
+  rig.exchange.hold_port();
+  EXPECT_EQ(rig.channel.sent.size(), 1u) << "nothing of the slow pace is sent yet";
+  rig.period(3.0, 120'000);
+  rig.exchange.hold_port();
+  ASSERT_EQ(rig.channel.sent.size(), 3u);
+  EXPECT_EQ(rig.channel.sent[2].sample, rig.channel.sent[1].sample);
+
+  rig.period(3.0, -1);  // it waits for an answer, and repeats its sample meanwhile
+  EXPECT_GE(rig.channel.sent.size(), 3u + 100'000'000 / kRepeat - 2u);
+  EXPECT_EQ(rig.channel.sent.back().sample, rig.channel.sent[2].sample + 1);
+
+  PromptRig alone;
+  alone.slow_down(100);
+  alone.period(3.0, -1);
+  alone.exchange.hold_port();
+  EXPECT_EQ(alone.channel.sent.size(), 1u) << "where no standby waits";
 }
 
 TEST(RealtimeExchange, SamplesSayWhenTheSensorsWereReadAndHowOldTheirAnswerWas) {
