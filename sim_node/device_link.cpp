@@ -53,14 +53,16 @@ void DeviceLink::listen() {
   while (!ending_) {
     while (device_reader_.take(description)) {
       const bool is_elsewhere = !device_reader_.is_of_this_host();
-      if (!refused_.receive(description, node::monotonic_nsec(), is_elsewhere)) continue;
-      reaches_.put(description.device_id(), description.epoch(), reach_of(description));
+      const bool is_new = refused_.receive(description, node::monotonic_nsec(), is_elsewhere);
+      // A process that has joined again is another peer: it is the same device, and stays known.
+      if (!is_new && !reaches_.knows(description.device_id(), description.epoch())) continue;
+      if (is_new) reaches_.put(description.device_id(), description.epoch(), reach_of(description));
       described_[{device_reader_.last_writer(), description.device_id()}] = {
           description.epoch(), description.device(), description.driver()};
       keep_described();
     }
     update_real_devices();
-    refused_.measure(node::monotonic_nsec());
+    refused_.measure(node::monotonic_nsec(), measures_);
     refused_.report_repeats();
     undescribed_.report();
     if (!ending_) device_reader_.wait(kLongestWait);

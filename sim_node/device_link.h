@@ -114,7 +114,7 @@ class DeviceLink {
   msg::GestureForces force_sample_;
   std::uint64_t unwritten_ = 0;
   std::vector<std::uint32_t> repeated_;  // real time: devices that got an answer again in this tick
-  bool measures_ = true;                 // the delays of answers
+  std::atomic<bool> measures_{true};     // the delays of answers
   AnswerDelays delays_;
   RefusedDevices refused_;
   RealDevices real_;

@@ -97,8 +97,11 @@ void RefusedDevices::keep(std::uint64_t epoch, std::int64_t now_nsec) noexcept {
   }
 }
 
-void RefusedDevices::measure(std::int64_t now_nsec) {
+void RefusedDevices::measure(std::int64_t now_nsec, bool is_measuring) {
   const std::lock_guard lock(mutex_);
+  const std::int64_t looked_nsec = std::exchange(looked_nsec_, now_nsec);
+  if (!is_measuring && looked_nsec != 0) unmeasured_nsec_ += now_nsec - looked_nsec;
+  const std::int64_t measured_nsec = now_nsec - unmeasured_nsec_;
   bool any_changed = false;
   for (std::size_t i = 0; i < known_.size(); ++i) {
     Known& device = known_[i];
@@ -106,13 +109,13 @@ void RefusedDevices::measure(std::int64_t now_nsec) {
     any_changed = std::exchange(device.is_there, is_there) != is_there || any_changed;
     if (delays_ == nullptr) continue;
     if (is_there) delays_->add(device.epoch, device.limits.rate_hz, now_nsec);
-    device.measured_s = delays_->delay_s(device.epoch, now_nsec);
+    device.measured_s = delays_->delay_s(device.epoch, measured_nsec);
     device.was_measured = device.was_measured || device.measured_s.has_value();
     const std::optional<double> measured =
         device.measured_s ? std::optional(*device.measured_s * device.limits.rate_hz)
                           : std::nullopt;
     const DelayInUse before = device.delay;
-    if (!device.delay.update(measured, now_nsec)) continue;
+    if (!device.delay.update(measured, measured_nsec)) continue;
     any_changed = true;
     report_delay(device, before, now_nsec);
   }

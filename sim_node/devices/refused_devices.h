@@ -61,7 +61,8 @@ class RefusedDevices {
 
   /// Takes over what is measured, at every device whose delay has changed. To be called several
   /// times a second; in the thread of receive().
-  void measure(std::int64_t now_nsec);
+  /// @param is_measuring  false since the call before: what was measured before stays, and does not age
+  void measure(std::int64_t now_nsec, bool is_measuring = true);
 
   /// Reports what has repeated itself. To be called at least now and then.
   void report_repeats();
@@ -122,7 +123,9 @@ class RefusedDevices {
 
   double delay_periods_;
   AnswerDelays* delays_;
-  std::mutex mutex_;  // of whoever decides
+  std::int64_t looked_nsec_ = 0;      // measure() before; the thread of it, as the next
+  std::int64_t unmeasured_nsec_ = 0;  // time in which nothing was measured
+  std::mutex mutex_;                  // of whoever decides
   std::vector<PortDemand> demands_;
   std::vector<Known> known_;       // each at the index of its row
   mutable std::mutex text_mutex_;  // of what is reported

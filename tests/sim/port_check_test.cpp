@@ -321,6 +321,25 @@ TEST(RefusedDevices, AreSupportedOnceTheirAnswersAreMeasuredFastEnough) {
   EXPECT_NEAR(devices.loops()[0].supported_stiffness.value(), 2070.0, 50.0);
 }
 
+/// In slow motion nothing is measured, for longer than a measurement counts.
+TEST(RefusedDevices, KeepTheirDelayWhileNothingIsMeasured) {
+  MeasuredDevices session;
+  session.devices.receive(description_of(1, 1.5));
+  session.devices.play(walls_of("800"));
+  session.play(1, 0.2e-3);
+  ASSERT_FALSE(session.refuses(1));
+
+  for (int i = 0; i < 120; ++i) {
+    session.devices.measure(session.now_nsec += kSecondOfWall / 4, false);
+    ASSERT_FALSE(session.refuses(1)) << i;
+  }
+  session.devices.measure(session.now_nsec += kSecondOfWall / 4);
+  EXPECT_FALSE(session.refuses(1)) << "nor at the end of slow motion";
+
+  for (int i = 0; i < 60; ++i) session.devices.measure(session.now_nsec += kSecondOfWall / 4);
+  EXPECT_TRUE(session.refuses(1)) << "what is measured still ages";
+}
+
 TEST(RefusedDevices, OfAnotherHostAreThoseWhoseLinkIsNotMeasuredYet) {
   MeasuredDevices session;
   RefusedDevices& devices = session.devices;
