@@ -215,12 +215,15 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         varying->liaison,
         "each passage over its bend may gain energy, for its K' varies by more than 1"};
   }
-  constexpr double kCertainBesideAll = 0.25 * kCertainBend;  // no vibration has more than K' = 4
+  constexpr double kMaxNumber = 4.0;  // K' of any vibration
+  constexpr double kCertainBesideAll = certain_beside(kMaxNumber) / kMaxNumber;
   if (std::max(touch, variation) <= kCertainBesideAll) return {};
-  if (std::max(touch, variation) * stiffest_vibration(network, graph) <= kCertainBend) return {};
-  return Uncertainty{touch > variation ? contact->liaison : varying->liaison,
-                     "it may gain energy from a stiff vibration beside it, for the product of what "
-                     "its K' varies by and the K' of that is above 1"};
+  const double stiffest = stiffest_vibration(network, graph);
+  if (std::max(touch, variation) * stiffest <= certain_beside(stiffest)) return {};
+  return Uncertainty{
+      touch > variation ? contact->liaison : varying->liaison,
+      "it may gain energy from a stiff vibration beside it, for the product of what "
+      "its K' varies by and the K' of that is above 1, or 0.6 where that has K' above 2"};
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {

@@ -97,6 +97,22 @@ TEST(Certificate, HoldsAtItsStepWithAViscosityThatGrowsWithTheSpeed) {
   }
 }
 
+TEST(Certificate, LetsARootOfTheSpeedChatterAtNoMoreThanTwoHundredthsOfTheSpeedOfAHand) {
+  for (const double exponent : {0.0, 0.5}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+    scene.mats[1].velocity = Vec3(0.002, 0, 0);
+    join(scene, viscous(engine::Power{0.3, exponent}), 0.1);
+    scene.step = 0.98 * stability_at_start(scene).certified.step;
+    engine::World world(std::make_shared<const engine::Network>(scene));
+    double fastest = 0.0;
+    for (int n = 0; n < 2000; ++n) {
+      world.step();
+      fastest = std::max(fastest, world.velocity(1).norm());
+    }
+    EXPECT_LT(fastest, 0.02) << exponent;
+  }
+}
+
 TEST(Certificate, JudgesAViscosityAtTheSpeedThatADriveOrAWeightHoldsAgainstIt) {
   NetworkDescription pushed = mass_at(Vec3::Zero(), 1, 15.3);
   join(pushed, viscous(engine::Power{0.01, 3.0}), 0.0);
