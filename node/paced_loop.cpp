@@ -30,6 +30,13 @@ RealtimeGrant make_realtime(int priority) noexcept {
 
 PacedLoop::PacedLoop(double rate_hz, double phase) noexcept : rate_hz_(rate_hz), phase_(phase) {
   CORDIS_ASSERT(rate_hz > 0.0 && phase >= 0.0 && phase <= 1.0);
+  find_deadline();
+}
+
+/// The present deadline, or the last one.
+void PacedLoop::find_deadline() noexcept {
+  const double periods = static_cast<double>(monotonic_nsec()) * rate_hz_ / 1e9 - phase_;
+  deadline_index_ = static_cast<std::int64_t>(periods);
 }
 
 std::int64_t PacedLoop::deadline(std::int64_t index) const noexcept {
@@ -40,10 +47,7 @@ std::uint64_t PacedLoop::wait() noexcept {
   const auto period = static_cast<std::int64_t>(1e9 / rate_hz_);
   ++ticks_;
   const bool is_first = ticks_ == 1;
-  if (is_first) {
-    const double periods = static_cast<double>(monotonic_nsec()) * rate_hz_ / 1e9 - phase_;
-    deadline_index_ = static_cast<std::int64_t>(periods);  // the present or the last one
-  }
+  if (is_first) find_deadline();
   ++deadline_index_;
   const std::int64_t due = deadline(deadline_index_);
   sleep_until(due);

@@ -45,7 +45,7 @@ class PacedLoop {
   /// next one by itself; every other delay is the machine's. Time in which the tick waits counts as
   /// the machine's too.
   LateCause late_cause() const noexcept { return late_cause_; }
-  /// The next deadline [ns]; after a wait().
+  /// The next deadline [ns].
   std::int64_t next_nsec() const noexcept { return deadline(deadline_index_ + 1); }
   double rate_hz() const noexcept { return rate_hz_; }
 
@@ -59,6 +59,7 @@ class PacedLoop {
   std::int64_t woken_processor_nsec_ = 0;  // of the thread, when the present tick began
 
   std::int64_t deadline(std::int64_t index) const noexcept;
+  void find_deadline() noexcept;
 };
 
 }  // namespace cordis::node

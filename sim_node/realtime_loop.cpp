@@ -31,7 +31,10 @@ void run_realtime(SceneLoop& loop) {
   const node::TickCost cost;
   std::uint64_t ticks = 0;
   while (!loop.finished()) {
-    if (loop.devices().real_devices().are_played()) loop.set_time_scale(1.0);
+    if (loop.time_scale() != 1.0 && loop.devices().real_devices().are_played()) {
+      loop.set_time_scale(1.0);
+      spdlog::info("a device with motors plays: slow motion ends");
+    }
     if (pace.rate_hz() != pace_of(loop)) {
       pace.restart(pace_of(loop));
       loop.devices().set_time_scale(loop.time_scale());

@@ -41,6 +41,13 @@ TEST(PacedLoop, NeverTicksBeforeItsDeadline) {
   EXPECT_EQ(loop.ticks(), 51u);
 }
 
+TEST(PacedLoop, KnowsTheNextDeadlineBeforeItsFirstTick) {
+  const std::int64_t before = monotonic_nsec();
+  const PacedLoop loop(10.0);
+  EXPECT_GE(loop.next_nsec(), before);
+  EXPECT_LE(loop.next_nsec(), monotonic_nsec() + 100'000'000);
+}
+
 TEST(PacedLoop, SkipsAndCountsDeadlinesMissedInsteadOfCatchingUp) {
   PacedLoop loop(1000.0);
   loop.wait();

@@ -114,7 +114,9 @@ export class Hud {
       return;
     }
     const target = sim.target_rate_hz ?? 0;
-    const short = target > 0 && sim.state !== 'paused' && (sim.reached_rate_hz ?? 0) < 0.98 * target;
+    // A rate over half a second is one tick more or less: 2 Hz.
+    const missing = target - (sim.reached_rate_hz ?? 0);
+    const short = target > 0 && sim.state !== 'paused' && missing > Math.max(0.02 * target, 2);
     set('loop', rate(sim.reached_rate_hz), short ? 'warn' : '');
     set('loop-more', target > 0 ? `/ ${plainRate(target)} Hz` : 'Hz, no target');
     const share = sim.ticks > 0 ? sim.overruns / sim.ticks : 0;
