@@ -15,6 +15,8 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 constexpr const char* kPullsWhereEndsMeet =
     "it still pulls where its ends meet, and turns there without a limit";
+constexpr const char* kPassesThrough =
+    "nothing keeps its ends from passing each other, and beyond that it is steep without an end";
 constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
@@ -213,6 +215,11 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   if (turns && follows && state.pushes && !slope.bounded && slope.uncertainty == nullptr &&
       rest_length > 0.0 && stretch.shorter >= rest_length) {
     slope.uncertainty = kCrushed;
+  }
+  // In 1-D the ends pass each other, and what pushed before pulls then, as far as `pushes` is concerned.
+  if (!turns && !state.pushes && std::holds_alternative<engine::LennardJones>(state.elasticity)) {
+    slope.bounded = false;
+    slope.uncertainty = kPassesThrough;
   }
   if (turns && state.pulls) {
     const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
