@@ -7,6 +7,7 @@
 #include "node/tick_cost.h"
 #include "node/time.h"
 #include "sim_node/arrival_pace.h"
+#include "sim_node/engine/core/thread_team.h"
 
 namespace cordis::sim {
 namespace {
@@ -26,6 +27,9 @@ void run_realtime(SceneLoop& loop) {
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
+  loop.simulation().world().team().run([](std::size_t member) noexcept {
+    if (member > 0) node::make_realtime(kLoopPriority);
+  });
   ArrivalPace pace(pace_of(loop));
   std::int64_t changed_nsec = node::monotonic_nsec() - kFollowed;  // the pace, last
   const node::TickCost cost;

@@ -7,15 +7,18 @@
 #include <spdlog/spdlog.h>
 
 #include "node/config/count_text.h"
+#include "node/machine/processor_quota.h"
 #include "sim_node/asap_loop.h"
 #include "sim_node/lockstep_loop.h"
 #include "sim_node/realtime_loop.h"
+#include "sim_node/run/thread_count.h"
 
 namespace cordis::sim {
 
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       signals_for_(config.signals_for),
+      threads_(config.threads),
       participant_(start.config()),
       loop_participant_(start.join_for_force_loop()),
       devices_(participant_, loop_participant_, start.epoch, start.launch.clock,
@@ -34,7 +37,17 @@ Session::Session(const node::NodeStart& start, SimConfig config)
               }),
       control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {}
 
+/// Before anything else needs the cores.
+void Session::share_steps() {
+  std::size_t most = machine::usable_processors();
+  if (start_.launch.clock == config::Clock::kRealtime)
+    most = max_threads_beside(start_.launch.nodes.size() - 1, most);
+  const SharedSteps shared = sim::share_steps(loop_.simulation().world(), threads_, most);
+  if (!shared.text.empty()) spdlog::info("{}", shared.text);
+}
+
 int Session::run() {
+  share_steps();
   control_.publish_first_scene();
   loop_.record_state();
   devices_.play(loop_.simulation().scene());

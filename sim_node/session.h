@@ -1,6 +1,7 @@
 // sim_node/session.h -- a simulation that takes part in a session: what runs beside its loop.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "node/dds/participant.h"
@@ -24,10 +25,12 @@ class Session {
   int run();
 
  private:
+  void share_steps();
   void run_loop();
 
   const node::NodeStart& start_;
   const std::string signals_for_;      // the node that gets every row of signals; empty: none
+  const std::size_t threads_;          // as of SimConfig
   dds::Participant participant_;       // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   DeviceLink devices_;

@@ -56,6 +56,8 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
   section.delay_quantile =
       reader.optional_number("delay_quantile", 0.95, config::Range::between(0.5, 1.0));
   section.signals_for = reader.optional_text("signals_for", "");
+  section.threads = static_cast<std::size_t>(
+      reader.optional_integer_or("threads", "auto", kFastest, 1, kMaxThreads));
   section.scene_place = reader.place_of("scene");
   reader.finish();
   return section;
@@ -64,8 +66,13 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode& node,
                           config::Problems& problems) {
   const SimSection section = read_sim_section(node, problems);
-  SimConfig sim{
-      section.duration_s, section.force, section.delay_quantile, section.signals_for, {}, {}};
+  SimConfig sim{section.duration_s,
+                section.force,
+                section.delay_quantile,
+                section.signals_for,
+                section.threads,
+                {},
+                {}};
   if (section.scene_file.empty()) return sim;
   sim.scene =
       load_checked_scene(launch, section.scene_file, section.scene_place, sim.force, problems);

@@ -1,8 +1,12 @@
 // sim_node/sim_config.h -- what a launch file says about a sim_node.
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include "node/config/launch.h"
 #include "sim_node/run/request_source.h"
+#include "sim_node/run/thread_count.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::sim {
@@ -17,6 +21,7 @@ struct SimSection {
   /// `delay_quantile`: the share of the answers to a device that come within the delay for which
   /// its limits are computed
   double delay_quantile = 0.95;
+  std::size_t threads = kFastest;  ///< `threads`: how many share a step
   /// `signals_for`: the node that gets every row of scene/signals; empty: none waits
   std::string signals_for;
 };
@@ -26,12 +31,13 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 
 /// What a sim_node runs.
 struct SimConfig {
-  double duration_s = 0.0;       ///< duration from the section
-  bool force = false;            ///< `force` of the section
-  double delay_quantile = 0.95;  ///< quantile from the section
-  std::string signals_for;       ///< `signals_for` of the section
-  scene::Scene scene;            ///< what the file of the section says
-  SceneSource source;            ///< source of the scene
+  double duration_s = 0.0;         ///< duration from the section
+  bool force = false;              ///< `force` of the section
+  double delay_quantile = 0.95;    ///< quantile from the section
+  std::string signals_for;         ///< `signals_for` of the section
+  std::size_t threads = kFastest;  ///< `threads` of the section
+  scene::Scene scene;              ///< what the file of the section says
+  SceneSource source;              ///< source of the scene
 };
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,

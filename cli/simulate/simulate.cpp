@@ -22,10 +22,9 @@
 #include "cli/simulate/state_file.h"
 #include "cli/table/column_summary.h"
 #include "cli/table/sound_file.h"
-#include "node/machine/wakeups.h"
+#include "node/machine/processor_quota.h"
 #include "sim_node/checks/settling.h"
 #include "sim_node/checks/start_state.h"
-#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/run/thread_count.h"
 
 namespace cordis::cli {
@@ -33,20 +32,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using WallClock = std::chrono::steady_clock;
-
-/// @param threads  as many as SimulateOptions::threads says @return how many share a step now
-std::size_t share_steps(engine::World& world, std::size_t threads) {
-  const std::size_t count = threads > 0
-                                ? std::min(threads, world.block_count())
-                                : sim::fastest_thread_count(world, machine::usable_cores().size());
-  try {
-    world.share_steps(std::make_shared<engine::ThreadTeam>(count));
-  } catch (const std::system_error& error) {
-    throw std::runtime_error(
-        fmt::format("the system does not give {} threads: {}", count, error.what()));
-  }
-  return count;
-}
 
 double duration_of(const SimulateOptions& options, const OfflineSession& session) {
   if (options.duration_s > 0.0) return options.duration_s;
@@ -195,7 +180,9 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   if (!options.state_file.empty()) state.emplace(options.state_file);
   Recording recording(options, session);
   SimulateResult result;
-  result.threads = share_steps(session.simulation().world(), options.threads);
+  result.threads =
+      sim::share_steps(session.simulation().world(), options.threads, machine::usable_processors())
+          .threads;
   result.warnings = session.warnings();
   result.settled = sim::settled_text(session.scene());
 

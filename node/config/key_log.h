@@ -16,6 +16,7 @@ enum class KeyKind {
   kAny,  ///< several kinds, or a text with rules of its own
   kNumber,
   kInteger,
+  kIntegerOrWord,  ///< a whole number, or one of `choices`
   kTruth,
   kText,
   kChoice,    ///< one of `choices`

@@ -143,6 +143,26 @@ long MappingReader::optional_integer(const std::string& key, long fallback, long
   return value.exists() ? integer_of(value, key, fallback, lowest, highest) : fallback;
 }
 
+long MappingReader::optional_integer_or(const std::string& key, const std::string& word,
+                                        long fallback, long lowest, long highest) {
+  log_request(value_, key, KeyKind::kIntegerOrWord, false, [&](KeyRequest& r) {
+    r.range = integers(lowest, highest);
+    r.choices = {word};
+    r.fallback = word;
+  });
+  const Value value = take(key);
+  if (!value.exists()) return fallback;
+  const bool is_scalar = value.kind() == Value::Kind::kScalar;
+  if (is_scalar && value.text() == word) return fallback;
+  const bool is_number = is_scalar && !value.quoted() &&
+                         value.text().find_first_not_of("+-.0123456789") == std::string::npos;
+  if (is_number) return integer_of(value, key, fallback, lowest, highest);
+  report(value.place(),
+         name_of(key) + " must be " + word + " or a whole number, got " + value.described(),
+         did_you_mean(value.text(), {word}));
+  return fallback;
+}
+
 bool MappingReader::optional_truth(const std::string& key, bool fallback) {
   log_request(value_, key, KeyKind::kTruth, false,
               [&](KeyRequest& r) { r.fallback = word_of(fallback); });

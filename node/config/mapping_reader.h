@@ -34,6 +34,10 @@ class MappingReader {
   double optional_number(const std::string& key, double fallback, Range range = {});
   long required_integer(const std::string& key, long lowest, long highest);
   long optional_integer(const std::string& key, long fallback, long lowest, long highest);
+  /// A whole number, or a word in place of it. @return `fallback` for the word or without the key;
+  /// it is none of the numbers that the file may say
+  long optional_integer_or(const std::string& key, const std::string& word, long fallback,
+                           long lowest, long highest);
   bool optional_truth(const std::string& key, bool fallback);
   std::string required_text(const std::string& key);
   std::string optional_text(const std::string& key, std::string fallback);

@@ -62,6 +62,14 @@ void World::share_steps(std::shared_ptr<ThreadTeam> team) noexcept {
   state_->team = std::move(team);
 }
 
+void World::swap_teams(World& other) noexcept {
+  state_->team.swap(other.state_->team);
+}
+
+ThreadTeam& World::team() noexcept {
+  return *state_->team;
+}
+
 std::size_t World::block_count() const noexcept {
   return state_->freezing ? 1 : state_->blocks.count();
 }

@@ -39,6 +39,10 @@ class World {
   /// From now on these threads share each step; at first the calling thread is alone. Not in real time.
   /// Preconditions: there is a team, and it serves one world at a time.
   void share_steps(std::shared_ptr<ThreadTeam> team) noexcept;
+  /// From now on the team of the other world shares each step of this one, and the other way round. Real time: O(1).
+  void swap_teams(World& other) noexcept;
+  /// The threads that share each step.
+  ThreadTeam& team() noexcept;
   /// Into how many parts a team can take a step apart; 1: more threads gain nothing.
   std::size_t block_count() const noexcept;
 

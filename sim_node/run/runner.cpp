@@ -45,12 +45,15 @@ void Runner::restart(std::unique_ptr<LoadedScene>& next) noexcept {
     if (now != nullptr) now->take_over(before, /*at_once=*/false);
   }
   played_before_s_ = played_s();
+  next->simulation.world().swap_teams(simulation().world());
   scene_.swap(next);
 }
 
 void Runner::exchange(Request& request) noexcept {
   request.done = request.scene->simulation.go_on_from(simulation(), request.room);
-  if (request.done) scene_.swap(request.scene);
+  if (!request.done) return;
+  request.scene->simulation.world().swap_teams(simulation().world());
+  scene_.swap(request.scene);
 }
 
 bool Runner::advance() noexcept {

@@ -11,6 +11,7 @@
 namespace cordis::sim {
 
 /// Plays a scene turn by turn, pauses, does single steps and changes over to another scene.
+/// The threads that share the steps of one scene then share those of the other.
 ///
 /// Time stops in a paused scene. Where the devices are the clock (lockstep) it stops
 /// for them too, and the pause leaves no trace in the result. Elsewhere the devices live on: they

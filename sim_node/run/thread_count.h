@@ -1,16 +1,31 @@
-// sim_node/run/thread_count.h -- how many threads a step is worth.
+// sim_node/run/thread_count.h -- how many threads share a step.
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "sim_node/engine/world.h"
 
 namespace cordis::sim {
 
-/// How many threads step a world fastest: 1, 2, 4 and so on up to `most`, measured on a second world of its
-/// network. More threads count only where they save a tenth of the time. Takes about 50 ms for each count;
-/// nothing where the steps cannot be shared. Results do not depend on it.
-/// @throws what World throws
-std::size_t fastest_thread_count(const engine::World& world, std::size_t most);
+inline constexpr std::size_t kFastest = 0;       ///< as many threads as are fastest
+inline constexpr std::size_t kMaxThreads = 256;  ///< largest value of `threads`
+
+/// How many threads share a step now, and why, for a person; empty where there was no choice.
+struct SharedSteps {
+  std::size_t threads = 1;
+  std::string text;
+};
+
+/// Lets threads share the steps of a world. Of kFastest, 1, 2, 4 and so on up to `most` are measured on a
+/// second world of its network: more threads count only where they save a tenth of the time. That takes about 50 ms
+/// for each count. A step that cannot be taken apart has one thread. Results do not depend on it.
+/// @param threads  so many, or kFastest
+/// @throws std::runtime_error when the system does not give so many threads; what World throws
+SharedSteps share_steps(engine::World& world, std::size_t threads, std::size_t most);
+
+/// How many threads may share the steps of a realtime session: each other node keeps a core.
+/// @param nodes  other nodes of the session @param processors  that this process may use
+std::size_t max_threads_beside(std::size_t nodes, std::size_t processors) noexcept;
 
 }  // namespace cordis::sim

@@ -77,6 +77,7 @@ TEST(MappingReader, ReturnsTheFallbackOfWhatIsAbsent) {
 
   EXPECT_EQ(reader.optional_number("n", 2.5, Range::positive()), 2.5);
   EXPECT_EQ(reader.optional_integer("i", 7, 0, 9), 7);
+  EXPECT_EQ(reader.optional_integer_or("o", "auto", 0, 1, 9), 0);
   EXPECT_TRUE(reader.optional_truth("t", true));
   EXPECT_EQ(reader.optional_text("w", "word"), "word");
   EXPECT_EQ(reader.optional_choice("c", "a", {"a", "b"}), "a");
@@ -86,6 +87,29 @@ TEST(MappingReader, ReturnsTheFallbackOfWhatIsAbsent) {
   EXPECT_FALSE(reader.optional_value("v").exists());
 
   EXPECT_EQ(problems.text(), "");
+}
+
+TEST(MappingReader, TakesAWholeNumberOrTheWordInItsPlace) {
+  const auto read = [](MappingReader& r) {
+    for (const char* key : {"a", "b", "c", "d", "e"}) r.optional_integer_or(key, "auto", 0, 1, 8);
+  };
+  EXPECT_EQ(problems_of(R"(a: auto
+b: 8
+c: 9
+d: atuo
+e: [1]
+)",
+                        read),
+            R"(t:3:4: error: 'c' in thing must be between 1 and 8, got 9
+c: 9
+   ^
+t:4:4: error: 'd' in thing must be auto or a whole number, got 'atuo'
+d: atuo
+   ^
+  hint: did you mean 'auto'?
+t:5:4: error: 'e' in thing must be auto or a whole number, got a sequence
+e: [1]
+   ^)");
 }
 
 TEST(MappingReader, ReportsEveryMissingKeyAtTheMapping) {

@@ -104,6 +104,21 @@ TEST_P(ForceLoop, ThreadsOfLoopAndDdsHaveRealtimePriorityAndNoneInLockstep) {
   }
 }
 
+TEST(ForceLoop, ThreadsThatShareAStepHaveThePriorityOfTheLoop) {
+  if (!may_have_realtime_priority()) GTEST_SKIP() << "realtime priority is not permitted here";
+  LiveSession session("realtime", R"(  sim: {node: sim_node, scene: scene.yaml, threads: 3}
+  keyboard: {node: device_node, device: key.yaml}
+)");
+  StatusWatch status(session.participant());
+  session.add_file("scene.yaml", large_net_scene());
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard");
+
+  ASSERT_TRUE(status.wait_for_phase("sim", msg::PHASE_RUNNING));
+  EXPECT_TRUE(eventually([&] { return realtime_threads_of(session.node("sim").id())[80] == 3; }));
+}
+
 TEST_P(ForceLoop, AKeyOfRoleLiaisonMovesTheMassItPushes) {
   LiveSession session(GetParam(), kSimAndKey);
   session.add_file("scene.yaml", pushed_mass_scene());

@@ -45,6 +45,23 @@ links:
 )";
 }
 
+/// A key of role mass on a corner of a net of 19,800 links, whose steps threads can share; 4 steps a tick.
+inline std::string large_net_scene() {
+  return R"(cordis: 1
+name: large_net
+space: 1
+step: {rate_hz: 4000, gesture_rate_hz: 1000, integrator: cordis}
+liaisons:
+  thread: {kind: spring_damper, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0.05}
+matter:
+  net: {kind: grid, rows: 100, columns: 100, mass_kg: 0.01, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0.05}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 0}
+links:
+  - {liaison: thread, between: [key, "net[0]"]}
+)";
+}
+
 /// A scripted key, up to its positions.
 inline const char* const kScriptedKey = R"(cordis: 1
 axes: 1

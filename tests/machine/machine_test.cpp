@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "node/machine/deadline_record.h"
+#include "node/machine/processor_quota.h"
 #include "node/machine/processor_time.h"
 #include "node/machine/timer_watch.h"
 #include "node/machine/wakeups.h"
@@ -42,6 +43,52 @@ TEST(SystemFiles, TakeWhatIsMissingForNothing) {
   EXPECT_FALSE(root.files().text("sys/two"));
   EXPECT_FALSE(root.files().text("sys"));
   EXPECT_TRUE(root.files().names("dev", "tty").empty());
+}
+
+TEST(ProcessorQuota, IsTheSmallestOfAllGroupsAround) {
+  const FakeRoot root;
+  root.put("proc/self/cgroup", "0::/a.slice/b.scope");
+  EXPECT_FALSE(processor_quota(root.files()));
+  root.put("sys/fs/cgroup/a.slice/b.scope/cpu.max", "max 100000\n");
+  EXPECT_FALSE(processor_quota(root.files()));
+  root.put("sys/fs/cgroup/a.slice/cpu.max", "250000 100000\n");
+  EXPECT_EQ(processor_quota(root.files()), 2.5);
+  root.put("sys/fs/cgroup/a.slice/b.scope/cpu.max", "300000 100000\n");
+  EXPECT_EQ(processor_quota(root.files()), 2.5);
+  root.put("sys/fs/cgroup/a.slice/b.scope/cpu.max", "50000 100000\n");
+  EXPECT_EQ(processor_quota(root.files()), 0.5);
+}
+
+TEST(ProcessorQuota, IsReadOfVersion1Too) {
+  const FakeRoot root;
+  root.put("proc/self/cgroup", "5:cpuset:/a\n4:cpu,cpuacct:/a\n0::/\n");
+  root.put("sys/fs/cgroup/cpuset/a/cpu.cfs_quota_us", "1\n");
+  root.put("sys/fs/cgroup/cpuset/a/cpu.cfs_period_us", "1\n");
+  root.put("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_quota_us", "-1\n");
+  root.put("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_period_us", "100000\n");
+  EXPECT_FALSE(processor_quota(root.files()));
+  root.put("sys/fs/cgroup/cpu,cpuacct/a/cpu.cfs_quota_us", "150000\n");
+  EXPECT_EQ(processor_quota(root.files()), 1.5);
+}
+
+/// A container has the path of its host, and its own group as the root.
+TEST(ProcessorQuota, IsThatOfTheRootInAContainer) {
+  const FakeRoot root;
+  root.put("proc/self/cgroup", "0::/docker/0123\n");
+  root.put("sys/fs/cgroup/cpu.max", "200000 100000\n");
+  EXPECT_EQ(processor_quota(root.files()), 2.0);
+}
+
+TEST(ProcessorQuota, LimitsTheProcessorsThatAreUsedToWholeOnes) {
+  const FakeRoot root;
+  EXPECT_EQ(usable_processors(root.files()), usable_cores().size());
+  root.put("proc/self/cgroup", "0::/\n");
+  for (const char* quota : {"50000 100000", "100000 100000", "190000 100000"}) {
+    root.put("sys/fs/cgroup/cpu.max", quota);
+    EXPECT_EQ(usable_processors(root.files()), 1U) << quota;
+  }
+  root.put("sys/fs/cgroup/cpu.max", "100000000 100000");
+  EXPECT_EQ(usable_processors(root.files()), usable_cores().size());
 }
 
 TEST(ProcessorTime, ReportsTheShareThatWasStolen) {

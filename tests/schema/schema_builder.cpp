@@ -81,6 +81,7 @@ std::set<std::string> types_of(const KeyFacts& facts) {
       {KeyKind::kMapping, {"object"}},
       {KeyKind::kSequence, {"array"}},
       {KeyKind::kFormula, {"number", "string"}},
+      {KeyKind::kIntegerOrWord, {"integer", "string"}},
   };
   std::set<std::string> types;
   for (const KeyKind kind : facts.kinds) {
@@ -127,6 +128,13 @@ Json scalar(const KeyFacts& facts, const std::string& key, bool may_be_parameter
   if (kinds == std::set{KeyKind::kColour}) {
     const Json colour{{"type", "string"}, {"pattern", kColour}};
     return may_be_parameter ? Json{{"anyOf", {colour, parameter_of_a_part()}}} : colour;
+  }
+  if (kinds == std::set{KeyKind::kIntegerOrWord}) {
+    Json integer{{"type", "integer"}};
+    add_range(facts, integer);
+    schema["anyOf"] = Json::array({{{"enum", facts.choices}}, integer});
+    schema["default"] = *facts.fallbacks.begin();
+    return schema;
   }
   std::set<std::string> types = types_of(facts);
   if (is_choice) types = {"string", "number", "boolean"};

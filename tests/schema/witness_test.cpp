@@ -36,6 +36,7 @@ constexpr std::array kExceptions{
     Exception{"launch nodes.NAME.signals_for", "set by cordis run --signals"},
     Exception{"launch nodes.NAME.force", "lets a scene run that surely diverges: none ships"},
     Exception{"launch nodes.NAME.delay_quantile", "of a host that is late more often"},
+    Exception{"launch nodes.NAME.threads", "of scenes larger than any that ships"},
     Exception{"launch nodes.NAME.address", "opens a page to the network: nothing that ships does"},
     Exception{"launch nodes.NAME.scenes", "what a page may load is a right that its owner gives"},
     Exception{"device driver: ", "a driver of hardware is named by who has it"},
