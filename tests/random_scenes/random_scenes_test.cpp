@@ -50,9 +50,9 @@ const std::uint32_t kCount = from_environment("CORDIS_RANDOM_SCENES", rounds(200
 std::vector<std::uint32_t> seeds() {
   std::vector<std::uint32_t> all;
   for (std::uint32_t seed = kFirst; seed < kFirst + kCount; ++seed) all.push_back(seed);
-  all.insert(all.end(), {2000445, 2001463, 2001655, 2002177, 2102528, 2103495, 2300047, 2301789,
-                         2400562, 2505413, 2600494, 2903472, 2904197, 3000855, 3001327, 3003611,
-                         3003631, 3003908, 3004529});
+  all.insert(all.end(), {2000445, 2001463, 2001655, 2002177, 2102528, 2103495, 2300047,
+                         2301789, 2400562, 2505413, 2600494, 2903472, 2904197, 3000855,
+                         3001327, 3003611, 3003631, 3003908, 3004529, 4000350});
   return all;
 }
 

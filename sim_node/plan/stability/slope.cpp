@@ -16,7 +16,7 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 constexpr const char* kPullsWhereEndsMeet =
     "it still pulls where its ends meet, and turns there without a limit";
 constexpr const char* kPassesThrough =
-    "nothing keeps its ends from passing each other, and beyond that it is steep without an end";
+    "nothing keeps its ends from passing each other, and there its force jumps";
 constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
@@ -217,7 +217,9 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.uncertainty = kCrushed;
   }
   // In 1-D the ends pass each other, and what pushed before pulls then, as far as `pushes` is concerned.
-  if (!turns && !state.pushes && std::holds_alternative<engine::LennardJones>(state.elasticity)) {
+  const bool is_of_distance = std::holds_alternative<engine::LennardJones>(state.elasticity) ||
+                              std::holds_alternative<engine::Rings>(state.elasticity);
+  if (!turns && !state.pushes && is_of_distance) {
     slope.bounded = false;
     slope.uncertainty = kPassesThrough;
   }
