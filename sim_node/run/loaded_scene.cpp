@@ -32,15 +32,8 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .state_link_count = scene.network.state_links.size()};
 }
 
-plan::Stability stability_of(const scene::Scene& scene) {
-  return plan::stability_of(scene.network, plan::liaison_graph(scene.network));
-}
-
-/// What is within, unless links turn about: a scene whose own energy may turn one is watched all the time.
-plan::ReachLimit reach_of(const scene::Scene& scene, const plan::Turning& turning) {
-  plan::ReachLimit reach = plan::reach_limit(scene.network);
-  if (!turning.liaison) reach.energy = std::min(reach.energy, turning.energy);
-  return reach;
+bool is_certified(const scene::Scene& scene) {
+  return plan::stability_of(scene.network, plan::liaison_graph(scene.network)).holds();
 }
 
 double number_of_start(LimitWatch& limits, const engine::World& world) {
@@ -52,26 +45,20 @@ double number_of_start(LimitWatch& limits, const engine::World& world) {
 
 LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
                          std::uint64_t version)
-    : LoadedScene(scene, stability_of(*scene), epoch, version) {}
-
-LoadedScene::LoadedScene(const std::shared_ptr<const scene::Scene>& scene,
-                         const plan::Stability& stability, std::uint64_t epoch,
-                         std::uint64_t version)
-    : simulation(scene, epoch),
+    : simulation(std::move(scene), epoch),
       frames(shape_of(simulation, version)),
       step_rows(simulation.scene().signals.by_step().size(), simulation.division().max_steps()),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
-      is_certain(stability.holds()),
-      may_turn(stability.turning.liaison.has_value()),
-      reach(is_certain ? reach_of(simulation.scene(), stability.turning) : plan::ReachLimit{}),
+      is_certain(is_certified(simulation.scene())),
+      reach(is_certain ? plan::reach_limit(simulation.scene().network) : plan::ReachLimit{}),
       watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
       shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network(), reach)),
       ticks_per_frame(ticks_per_frame_of(simulation.scene())) {}
 
 PassedBound LoadedScene::passed_bound(const BoundSigns& signs) noexcept {
   is_beyond_reach = is_beyond_reach || signs.is_beyond_reach;
-  if (is_certain && !may_turn && !is_beyond_reach) return PassedBound::kNone;
+  if (is_certain && !is_beyond_reach) return PassedBound::kNone;
   if (watches_number) {
     constexpr double kLimit = 4.0;
     limits.update(simulation.world());

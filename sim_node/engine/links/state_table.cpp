@@ -45,28 +45,6 @@ double energy_of_limited_spring(const StateTerm& term, double elongation) noexce
   return limited * (elongation - 0.5 * limited / term.stiffness);
 }
 
-/// True for a law that pulls what is longer and pushes what is shorter: what it stores is clamped as its
-/// elongation is.
-bool clamps_with_elongation(const Law& law) noexcept {
-  if (is_none(law)) return true;
-  if (const auto* power = std::get_if<Power>(&law)) return power->coefficient >= 0.0;
-  const auto* table = std::get_if<Table>(&law);
-  if (table == nullptr || elastic_tension(law, LawPoint{}) != 0.0) return false;
-  for (std::size_t i = 0; i < table->argument().size(); ++i) {
-    if (table->argument()[i] * table->value()[i] < 0.0) return false;
-  }
-  return true;
-}
-
-/// What Lennard-Jones stores that only pulls, or only pushes [J].
-double energy_of_half(const LennardJones& balls, bool pulls, double distance) noexcept {
-  const double of_no_force = std::pow(2.0, 1.0 / 6.0) * balls.diameter;
-  const double lowest = balls.cutoff > 0.0 ? std::min(of_no_force, balls.cutoff) : of_no_force;
-  const double away = std::abs(distance);
-  if (pulls) return balls.potential(std::max(away, lowest), 0.0);
-  return balls.potential(std::min(away, lowest), 0.0) - balls.potential(lowest, 0.0);
-}
-
 /// From where the energy of a law is integrated that has a limit [m]: there it is within the limit.
 double begin_of_integral(const Law& law, const LawPoint& link) noexcept {
   if (const Expression* expression = potential_expression(law))
@@ -170,10 +148,8 @@ void StateTable::Content::add_state(const LinkState& state,
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;
   }
-  const bool has_potential = stores_energy(state.elasticity) || term.elasticity.is_potential;
   term.limits_elastic =
-      state.force_limit < kUnlimited ||
-      (term.one_sided && has_potential && !clamps_with_elongation(state.elasticity));
+      state.force_limit < kUnlimited || (term.limited && term.elasticity.is_potential);
   term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
@@ -270,11 +246,6 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
   const Law& law = state(index).elasticity;
   if (is_none(law) || (!stores_energy(law) && potential_expression(law) == nullptr))
     return energy_of_limited_spring(term, link.elongation);
-  const auto* balls = std::get_if<LennardJones>(&law);
-  const bool is_limited = std::isfinite(state(index).force_limit);
-  if (balls != nullptr && term.stiffness == 0.0 && term.one_sided && !is_limited &&
-      (state(index).pulls || state(index).pushes))
-    return energy_of_half(*balls, state(index).pulls, link.distance);
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double distance) {
     const LawPoint point{distance, distance - rest_length, 0.0, link.mass_a, link.mass_b};
@@ -283,8 +254,7 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
   };
   const double begin = begin_of_integral(law, link);
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
-  const bool pulls = term.max_tension > 0.0;  // else what no force takes away stores nothing
-  const double at_begin = is_of_distance && pulls ? potential(law, {begin}) : 0.0;
+  const double at_begin = is_of_distance ? potential(law, {begin}) : 0.0;
   return at_begin + integral_over_distance(tension, begin, link.distance);
 }
 
