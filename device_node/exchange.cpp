@@ -76,7 +76,7 @@ void Exchange::set_time_scale(double scale) noexcept {
 /// DDS gives the port to a standby 20 ms after a sample, whatever the scale.
 void Exchange::hold_port() noexcept {
   const bool has_sent = sample_.sample >= paced_from_;
-  if (repeat_nsec_ > 0 && time_scale_ < 1.0 && present_ && has_sent) repeat_sample();
+  if (repeats() && present_ && has_sent) repeat_sample();
 }
 
 /// Simulated time since a moment of the clock.
@@ -238,10 +238,10 @@ void Exchange::apply_answers_until(std::int64_t nsec) noexcept {
   GestureMessage answer;
   while (!is_answered()) {
     const std::int64_t left = std::max<std::int64_t>(nsec - clock_(), 0);
-    const bool repeats = repeat_nsec_ > 0 && time_scale_ < 1.0 && left > repeat_nsec_;
-    if (channel_.receive(answer, std::chrono::nanoseconds(repeats ? repeat_nsec_ : left))) {
+    const bool goes_on = repeats() && left > repeat_nsec_;
+    if (channel_.receive(answer, std::chrono::nanoseconds(goes_on ? repeat_nsec_ : left))) {
       if (consider(answer)) apply();
-    } else if (repeats) {
+    } else if (goes_on) {
       hold_port();
     } else {
       return;

@@ -132,6 +132,8 @@ class Exchange {
   bool is_answered() const noexcept { return answers_.has_answered(sample_.sample); }
   double share_now() const noexcept;
   double simulated_s(std::int64_t since_nsec) const noexcept;
+  /// True if slow motion repeats samples.
+  bool repeats() const noexcept { return repeat_nsec_ > 0 && time_scale_ < 1.0; }
   double age_for_guard() noexcept;
   double since_command_s() noexcept;
   const AxisValues& command(double age_s, double share, double since_s) noexcept;

@@ -87,8 +87,7 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
     if (std::isfinite(status.energy_j()) && std::isfinite(status.integration_error_j())) {
       text += fmt::format(
           "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J "
-          "taken "
-          "by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
+          "taken by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
           status.energy_j(), status.port_work_j(), status.switching_energy_j(),
           status.dissipated_j(), status.largest_stability_number());
       text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());

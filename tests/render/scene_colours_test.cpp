@@ -128,16 +128,24 @@ TEST(SceneColours, OfASurfaceAreThoseOfItsFaces) {
   EXPECT_NE(svg_of(description, Theme::kLight).find(">wall<"), std::string::npos);
 }
 
+msg::StateMachineDescription glue() {
+  msg::StateMachineDescription liaison;
+  liaison.name("glue");
+  liaison.states({"sticks", "loose"});
+  return liaison;
+}
+
+msg::StateMachineDescription hook() {
+  msg::StateMachineDescription liaison;
+  liaison.name("hook");
+  liaison.states({"holds"});
+  return liaison;
+}
+
 TEST(LinkPatterns, AreOfScenesWithSeveralLiaisonsTheMostFrequentSolid) {
   msg::SceneDescription description = two_copies();
   EXPECT_EQ(ScenePainter(description, Theme::kDark).link_groups().size(), 1u);
-  msg::StateMachineDescription glue;
-  glue.name("glue");
-  glue.states({"sticks", "loose"});
-  msg::StateMachineDescription hook;
-  hook.name("hook");
-  hook.states({"holds"});
-  description.state_machines({glue, hook});
+  description.state_machines({glue(), hook()});
   description.link_state_machine({0, 0, 0, 0});
   EXPECT_EQ(ScenePainter(description, Theme::kDark).link_groups().size(), 1u);
   const std::size_t solid_lines = count_of(svg_of(description), "L");
@@ -160,13 +168,7 @@ TEST(LinkPatterns, AreOfScenesWithSeveralLiaisonsTheMostFrequentSolid) {
 
 TEST(LinkPatterns, AreOneForALiaisonWhateverItsParameters) {
   msg::SceneDescription description = two_copies();
-  msg::StateMachineDescription glue;
-  glue.name("glue");
-  glue.states({"sticks", "loose"});
-  msg::StateMachineDescription hook;
-  hook.name("hook");
-  hook.states({"holds"});
-  description.state_machines({hook, glue, glue, glue});
+  description.state_machines({hook(), glue(), glue(), glue()});
   description.link_state_machine({0, 1, 2, 3});
   const ScenePainter painter(description, Theme::kDark);
   ASSERT_EQ(painter.link_groups().size(), 2u);
