@@ -28,7 +28,7 @@ constexpr auto kLookAround = milliseconds(100);        // for a scene, while the
 constexpr double kLooksPerSecond = 50.0;               // after the guardian
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
-constexpr std::int64_t kLook = 5'000'000;              // after the pace, in slow motion [ns]
+constexpr std::int64_t kSampleAgain = 5'000'000;       // after the pace, in slow motion [ns]
 constexpr double kLongestPoll = 300e-6;                // for an answer, in a period [s]
 constexpr auto kLongSilence = std::chrono::seconds(2);  // after which its cause is looked for
 
@@ -128,7 +128,7 @@ void Device::play(Role role) {
                      .lockstep = lockstep,
                      .clock = &node::monotonic_nsec,
                      .since_boot = &since_boot_nsec,
-                     .repeat_nsec = for_loop_.config().standbys ? kLook : 0});
+                     .repeat_nsec = for_loop_.config().standbys ? kSampleAgain : 0});
   phases_.start();
   const node::TickCost cost;
   const std::uint64_t ticks_before = meter_.ticks();
@@ -167,8 +167,8 @@ void Device::play_paced(Exchange& exchange) {
       exchange.set_time_scale(scale);
       pace = node::PacedLoop(config_.layout.rate_hz * scale);
     }
-    if (scale < node::kFullTimeScale && pace.next_nsec() > node::monotonic_nsec() + kLook) {
-      node::sleep_until(node::monotonic_nsec() + kLook);
+    if (scale < node::kFullTimeScale && pace.next_nsec() > node::monotonic_nsec() + kSampleAgain) {
+      node::sleep_until(node::monotonic_nsec() + kSampleAgain);
       exchange.hold_port();
       continue;
     }

@@ -60,12 +60,30 @@ std::string partners_text(const SceneCheck& check, const plan::PartnerLimit& set
       liaison.name, location(liaison), set.least, sizes, set.at_start);
 }
 
+/// What turns about, or the energy from which on something may.
+std::string turning_text(const SceneCheck& check) {
+  const plan::Turning& turning = check.plan.stability.turning;
+  if (turning.liaison) {
+    const scene::Called link = scene::call_liaison(check.scene, turning.liaison);
+    return fmt::format(
+        "            the energy of the scene may press {}{} by more than a\n"
+        "            quarter of its length, where it turns about so fast that motion without "
+        "viscosity\n            may gain energy; energy is watched during the run\n",
+        link.name, location(link));
+  }
+  if (!std::isfinite(turning.energy)) return {};
+  return fmt::format(
+      "            beyond {:.3g} J links may turn about; energy is watched during the run\n",
+      turning.energy);
+}
+
 std::string stability_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   std::string text;
   if (stability.holds()) {
     text = fmt::format(
-        "stability   stable in every pose and state{}: margin {:.4g} % of stiffness\n",
+        "stability   stable in every pose and state{}{}: margin {:.4g} % of stiffness\n",
+        stability.turning.liaison ? " in which no link turns about" : "",
         is_guaranteed(stability) ? "" : " with the partners below", 100.0 * stability.margin());
   } else if (stability.diverges()) {
     text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
@@ -92,6 +110,7 @@ std::string stability_text(const SceneCheck& check) {
         "            a law has no largest slope: certified for the energy and speeds of the start, "
         "\n            and for a hand of 1 m/s; beyond them energy is watched during the run\n";
   }
+  text += turning_text(check);
   for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   return text + limit_text(check);
 }
@@ -384,6 +403,8 @@ std::string json_of(const SceneCheck& check) {
                         {"diverging_step_s", finite(stability.diverging_step)},
                         {"margin", stability.margin()},
                         {"bounded_laws", stability.bounded},
+                        {"turns_at_j", finite(stability.turning.energy)},
+                        {"may_turn", stability.turning.liaison.has_value()},
                         {"sets", sets_json(check)}}},
                       {"accuracy",
                        {{"band_hz", edge.frequency_hz},

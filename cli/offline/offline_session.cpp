@@ -254,12 +254,16 @@ void OfflineSession::play_until(double time_s, const std::function<void()>& afte
 }
 
 bool OfflineSession::play_tick(const std::function<void()>& after_step) {
+  const auto diverged = [this] {  // beyond every bound, also before the first frame
+    simulation().let_devices_go(sim::PassedBound::kEnergy);
+    return false;
+  };
   for (const auto& device : devices_) device->send_sample();
   events_.clear();
   for (bool complete = false; !complete;) {
     const int steps = after_step ? 1 : simulation().steps_left_in_tick();
     complete = simulation().advance(steps, events_);
-    if (simulation().failed()) return false;
+    if (simulation().failed()) return diverged();
     if (after_step) after_step();
   }
   simulation().read_signals(row_.data());
@@ -268,7 +272,7 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
     const engine::Energy energy = loaded_->energy.update(world());
     watch_integration_error(energy);
     if (!std::isfinite(energy.total())) simulation().fail();
-    if (simulation().failed()) return false;
+    if (simulation().failed()) return diverged();
     if (loaded_->watches_energy()) signs = sim::signs_of(world(), energy, loaded_->reach);
   }
   const sim::PassedBound bound = loaded_->passed_bound(signs);

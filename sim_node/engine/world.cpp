@@ -22,6 +22,15 @@ Vec3 velocity_at_half_step(const WorldState& state, std::uint32_t mat) noexcept 
   return state.mats.moved(mat) / state.network->step();
 }
 
+/// As Energy::gravity has it [J].
+double gravity_at_start(const NetworkDescription& network) noexcept {
+  double sum = 0.0;
+  for (const Mat& mat : network.mats) {
+    if (mat.kind == MatKind::kMass) sum -= mat.mass * network.gravity_on(mat).dot(mat.position);
+  }
+  return sum;
+}
+
 }  // namespace
 
 World::World(std::shared_ptr<const Network> network, VectorWidth width) {
@@ -206,6 +215,7 @@ const Columns& World::positions() const noexcept {
 Energy World::energy() const noexcept {
   const FloatMode mode;
   Energy energy = state_->scheme->energy(*state_);
+  energy.initial_gravity = gravity_at_start(state_->description());
   const std::vector<StateMachine>& laws = state_->table.state_machines();
   const auto drives = [](const StateMachine& law) { return may_drive(law); };
   if (energy.dissipated < 0.0 && std::none_of(laws.begin(), laws.end(), drives))

@@ -215,12 +215,15 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         varying->liaison,
         "each passage over its bend may gain energy, for its K' varies by more than 1"};
   }
-  constexpr double kCertainBesideAll = 0.25 * kCertainBend;  // no vibration has more than K' = 4
+  constexpr double kMaxNumber = 4.0;  // K' of any vibration
+  constexpr double kCertainBesideAll = certain_beside(kMaxNumber) / kMaxNumber;
   if (std::max(touch, variation) <= kCertainBesideAll) return {};
-  if (std::max(touch, variation) * stiffest_vibration(network, graph) <= kCertainBend) return {};
-  return Uncertainty{touch > variation ? contact->liaison : varying->liaison,
-                     "it may gain energy from a stiff vibration beside it, for the product of what "
-                     "its K' varies by and the K' of that is above 1"};
+  const double stiffest = stiffest_vibration(network, graph);
+  if (std::max(touch, variation) * stiffest <= certain_beside(stiffest)) return {};
+  return Uncertainty{
+      touch > variation ? contact->liaison : varying->liaison,
+      "it may gain energy from a stiff vibration beside it, for the product of what "
+      "its K' varies by and the K' of that is above 1, or 0.6 where that has K' above 2"};
 }
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
@@ -232,6 +235,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
     stability.diverging_step = diverging_step_of(network);
   }
   stability.bounded = graph.bounded;
+  stability.turning = graph.turning;
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
   stability.uncertainty = uncertainty_of(network, graph);

@@ -17,6 +17,13 @@ namespace cordis::plan {
 /// program, after which nothing is certified.
 inline constexpr const char* kLimitsCross = "the two limits of the step exclude each other";
 
+/// The largest product of the K' by which a slope varies and the K' of the stiffest vibration beside it that is
+/// certain. A vibration of more than a quarter turn in a step may be in resonance with the bend.
+inline constexpr double certain_beside(double stiffest) noexcept {
+  constexpr double kQuarterTurn = 2.0;
+  return stiffest > kQuarterTurn ? 0.6 : 1.0;
+}
+
 /// What is surely stable, what surely diverges.
 struct Stability {
   /// Stable in every pose and every combination of states, with so many partners as `sets` says.
@@ -28,6 +35,7 @@ struct Stability {
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 
   std::optional<Uncertainty> uncertainty;  ///< what keeps every step from being certain
+  Turning turning;                         ///< what may gain energy below every certified step
 
   bool holds() const noexcept { return step < certified.step && !uncertainty; }
   bool diverges() const noexcept { return step > diverging_step; }

@@ -1,6 +1,7 @@
 // sim_node/plan/rate_selection.cpp
 #include "sim_node/plan/rate_selection.h"
 
+#include <cmath>
 #include <optional>
 
 #include "node/assert.h"
@@ -11,6 +12,23 @@
 
 namespace cordis::plan {
 namespace {
+
+/// A rate at which it is certain that the network is stable, from this one on to four times that: a shorter step
+/// makes the K' of a bend smaller. This one itself where none is.
+double certain_rate(engine::NetworkDescription network, double rate_hz, double gesture_rate_hz) {
+  const auto is_certain = [&network](double rate) {
+    network.step = 1.0 / rate;
+    return !uncertainty_of(network, liaison_graph(network));
+  };
+  double low = std::round(rate_hz / gesture_rate_hz);  // in gesture rates, as the next
+  double high = 4.0 * low;
+  if (is_certain(rate_hz) || !is_certain(high * gesture_rate_hz)) return rate_hz;
+  while (high - low > 1.0) {
+    const double middle = std::floor(0.5 * (low + high));
+    (is_certain(middle * gesture_rate_hz) ? high : low) = middle;
+  }
+  return high * gesture_rate_hz;
+}
 
 RateSelection select_for(engine::NetworkDescription network, const AccuracyTarget& target,
                          double gesture_rate_hz, const std::string& integrator, bool has_ports) {
@@ -27,8 +45,9 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   AccuracyTarget only_limits = target;
   only_limits.tolerance = 1e9;
   const FormulaRate floor = rate_by_formula(network, only_limits, gesture_rate_hz);
-  const RateTrial trial = find_rate(
-      network, integrator, {target.tolerance, target.over_s, floor.rate_hz, gesture_rate_hz});
+  const double lowest_hz = certain_rate(network, floor.rate_hz, gesture_rate_hz);
+  const RateTrial trial =
+      find_rate(network, integrator, {target.tolerance, target.over_s, lowest_hz, gesture_rate_hz});
   if (trial.rate_hz == 0.0) {
     selection.uncertainty = "positions are not promised: " + trial.refusal;
     return selection;
@@ -41,8 +60,12 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   }
   selection.rate_hz = selection.needed_hz = trial.rate_hz;
   selection.error = trial.error;
-  selection.because =
-      trial.rate_hz > floor.rate_hz ? "the positions, as tried out" : to_string(floor.reason);
+  if (trial.rate_hz > lowest_hz) {
+    selection.because = "the positions, as tried out";
+  } else {
+    selection.because = lowest_hz > floor.rate_hz ? "the stability beside a stiff vibration"
+                                                  : to_string(floor.reason);
+  }
   return selection;
 }
 

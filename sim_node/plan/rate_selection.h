@@ -26,8 +26,9 @@ double cost_of_a_step(engine::NetworkDescription network, const RateSelection& s
 
 /// The cheapest of the integrators for what is asked. By the formulas of rate_by_formula; with over_s,
 /// a network that moves by itself is tried out (find_rate), within the limits of stability and of
-/// contacts. One whose ports are played is not: the gesture is unknown beforehand. Nor is a rate
-/// taken at which its stability is not certain: then the rate of the formulas stays.
+/// contacts. One whose ports are played is not: the gesture is unknown beforehand. No rate is tried at
+/// which its stability is not certain, if up to four times the rate of the limits there is a certain one.
+/// Where there is none the rate of the formulas stays.
 /// @param integrators  by name, at least one
 RateSelection select_rate(const engine::NetworkDescription& network, const AccuracyTarget& target,
                           double gesture_rate_hz, const std::vector<std::string>& integrators,

@@ -8,10 +8,11 @@ namespace cordis::sim {
 
 namespace {
 
-/// Kinetic energy and the magnitudes of the true potentials [J].
+/// Kinetic energy and the magnitudes of the true potentials, that of gravity from the start on [J].
 double energy_of_moment(const engine::Energy& energy) noexcept {
   return std::abs(energy.kinetic + energy.kinetic_excess) +
-         std::abs(energy.elastic - energy.elastic_error) + std::abs(energy.gravity);
+         std::abs(energy.elastic - energy.elastic_error) +
+         std::abs(energy.gravity - energy.initial_gravity);
 }
 
 }  // namespace
@@ -19,7 +20,8 @@ double energy_of_moment(const engine::Energy& energy) noexcept {
 engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
   engine::Energy energy = world.energy();
   const double now = energy_of_moment(energy);
-  energy.largest = std::isfinite(now) ? std::max({largest_, now, std::abs(energy.initial)}) : now;
+  const double at_start = std::abs(energy.initial - energy.initial_gravity);
+  energy.largest = std::isfinite(now) ? std::max({largest_, now, at_start}) : now;
   return energy;
 }
 

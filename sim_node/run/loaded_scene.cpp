@@ -32,8 +32,8 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .state_link_count = scene.network.state_links.size()};
 }
 
-bool is_certified(const scene::Scene& scene) {
-  return plan::stability_of(scene.network, plan::liaison_graph(scene.network)).holds();
+plan::Stability stability_of(const scene::Scene& scene) {
+  return plan::stability_of(scene.network, plan::liaison_graph(scene.network));
 }
 
 double number_of_start(LimitWatch& limits, const engine::World& world) {
@@ -45,12 +45,18 @@ double number_of_start(LimitWatch& limits, const engine::World& world) {
 
 LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
                          std::uint64_t version)
-    : simulation(std::move(scene), epoch),
+    : LoadedScene(scene, stability_of(*scene), epoch, version) {}
+
+LoadedScene::LoadedScene(const std::shared_ptr<const scene::Scene>& scene,
+                         const plan::Stability& stability, std::uint64_t epoch,
+                         std::uint64_t version)
+    : simulation(scene, epoch),
       frames(shape_of(simulation, version)),
       step_rows(simulation.scene().signals.by_step().size(), simulation.division().max_steps()),
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
-      is_certain(is_certified(simulation.scene())),
+      is_certain(stability.holds()),
+      may_turn(std::isfinite(stability.turning.energy)),
       reach(is_certain ? plan::reach_limit(simulation.scene().network) : plan::ReachLimit{}),
       watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
       shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network(), reach)),
@@ -58,7 +64,7 @@ LoadedScene::LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_
 
 PassedBound LoadedScene::passed_bound(const BoundSigns& signs) noexcept {
   is_beyond_reach = is_beyond_reach || signs.is_beyond_reach;
-  if (is_certain && !is_beyond_reach) return PassedBound::kNone;
+  if (is_certain && !may_turn && !is_beyond_reach) return PassedBound::kNone;
   if (watches_number) {
     constexpr double kLimit = 4.0;
     limits.update(simulation.world());

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim_node/checks/limit_watch.h"
+#include "sim_node/plan/plan.h"
 #include "sim_node/run/change_counter.h"
 #include "sim_node/run/energy_watch.h"
 #include "sim_node/run/frame_store.h"
@@ -22,12 +23,12 @@ struct LoadedScene {
               std::uint64_t version);
 
   /// True if the run of this scene needs its energy.
-  bool watches_energy() const noexcept { return !is_certain || !reach.is_infinite(); }
+  bool watches_energy() const noexcept { return !is_certain || may_turn || !reach.is_infinite(); }
 
   /// The bound beyond which a scene that is not certain lets go of its devices, if K' + 2 Z' or its
   /// energy passes it now. A scene that is certified within a reach is certain until it goes beyond
-  /// it, once and for all. What is certified ends with the partners too, which the simulation
-  /// watches itself. Real time.
+  /// it, once and for all. The energy of links that may turn about is watched from the start on. What is
+  /// certified ends with the partners too, which the simulation watches itself. Real time.
   /// @param signs  of a moment of this scene
   PassedBound passed_bound(const BoundSigns& signs) noexcept;
 
@@ -38,11 +39,16 @@ struct LoadedScene {
   LimitWatch limits;
   EnergyWatch energy;            ///< largest energy in the eyes of the loop
   bool is_certain;               ///< the step is certified
+  bool may_turn;                 ///< enough energy turns a link about: plan::Turning
   plan::ReachLimit reach;        ///< within which it is certain; infinite where it is not certain
   bool is_beyond_reach = false;  ///< it has gone beyond its reach
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified
   std::shared_ptr<ShadowWorld> shadow;
   std::uint64_t ticks_per_frame;
+
+ private:
+  LoadedScene(const std::shared_ptr<const scene::Scene>& scene, const plan::Stability& stability,
+              std::uint64_t epoch, std::uint64_t version);
 };
 
 }  // namespace cordis::sim

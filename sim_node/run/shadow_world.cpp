@@ -1,6 +1,7 @@
 // sim_node/run/shadow_world.cpp
 #include "sim_node/run/shadow_world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -12,9 +13,11 @@ namespace {
 /// True if an error is above this share of the largest energy, and no rounding; also once they are no
 /// finite numbers any more.
 bool is_above(double share, double error, const engine::Energy& energy) noexcept {
-  constexpr double kRounding = 1e-20;  // [J]
+  constexpr double kRounding = 1e-20;          // [J]
+  constexpr double kRoundingOfHeight = 1e-10;  // of the energy of gravity, counted from the origin
   if (!std::isfinite(error) || !std::isfinite(energy.largest)) return true;
-  return error > share * energy.largest && error > kRounding;
+  return error > share * energy.largest &&
+         error > std::max(kRounding, kRoundingOfHeight * std::abs(energy.gravity));
 }
 
 std::uint64_t next_id() noexcept {

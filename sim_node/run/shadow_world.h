@@ -35,7 +35,8 @@ WorldFigures figures_of(const engine::World& world, EnergyWatch& watch,
                         const plan::ReachLimit& reach = {}) noexcept;
 
 /// True when the steps have made or taken more than 1 % of the largest energy that the scene has had.
-/// What a scene at rest makes by rounding, below 1e-20 J, does not count.
+/// What a scene at rest makes by rounding does not count: below 1e-20 J, and below 1e-10 of the energy of
+/// gravity, which is counted from the origin.
 /// @param energy  as an EnergyWatch has it; likewise below
 bool is_error_large(const engine::Energy& energy) noexcept;
 

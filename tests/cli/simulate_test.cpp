@@ -351,6 +351,8 @@ TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
     const auto json = nlohmann::json::parse(text_of("n.json"));
     EXPECT_EQ(json["complete"], false);
     EXPECT_THAT(json["failure"].get<std::string>(), HasSubstr("not a finite number"));
+    EXPECT_THAT(json["passed_bound"].get<std::string>(), HasSubstr("a tenth of the largest"))
+        << "also before the first frame";
   }
 }
 

@@ -395,6 +395,106 @@ TEST(Energy, OfALawWithAForceLimitIsTheIntegralOfItsTension) {
   }
 }
 
+/// Two MATs that swing through a law that only pulls, or only pushes.
+NetworkDescription one_sided_scene(const LinkState& state, bool as_set) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 2e-5;
+  scene.gravity = Vec3(0, -9.81, 0);
+  // A ball on a spring beside the law, so that it comes to either side of it again and again.
+  scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.02, 0.13, 0)), fixed(Vec3(0, 0.12, 0))};
+  scene.links = {{1, 2, 20.0, 0.0, 0.0}};
+  scene.state_machines = {Behaving().state(state).state_machine};
+  if (as_set) {
+    engine::SetLiaison set;
+    set.set_p = {0};
+    set.set_q = {1};
+    set.range = 2.0;
+    set.rest_length = 0.1;
+    scene.sets = {set};
+  } else {
+    scene.state_links = {{0, 1, 0, 0.1}};
+  }
+  return scene;
+}
+
+/// What such a law stores is what its one side gives back; nothing of it counts as dissipated.
+TEST(Energy, OfALawThatOnlyPullsOrOnlyPushesIsTheIntegralOfThatSide) {
+  const std::vector<engine::Law> laws = {
+      lennard_jones_law(1e-2, 0.1, 0.0),        lennard_jones_law(1e-2, 0.1, 0.3),
+      lennard_jones_law(1e-2, 0.1, 0.105),      ring_law(),
+      engine::Table({-0.1, 0.05}, {0.2, -0.3}), power_law(-20.0, 3.0)};
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    for (const bool pulls : {true, false}) {
+      for (const bool as_set : {true, false}) {
+        SCOPED_TRACE("law " + std::to_string(i) + (pulls ? ", pulls" : ", pushes") +
+                     (as_set ? ", set" : ", link"));
+        LinkState state;
+        state.elasticity = laws[i];
+        state.pulls = pulls;
+        state.pushes = !pulls;
+        World world = make_world(one_sided_scene(state, as_set));
+        for (int n = 0; n < 20'000; ++n) {
+          world.step();
+          if (n % 50 != 0) continue;
+          const Energy energy = world.energy();
+          ASSERT_LT(std::abs(energy.integration_error()), 2e-3 * energy.largest) << "step " << n;
+          ASSERT_NEAR(energy.dissipated, 0.0, 1e-4 * energy.largest) << "step " << n;
+        }
+      }
+    }
+  }
+}
+
+TEST(Energy, OfASpringBesideOneSidedRingsIsThatOfTheSpringBeyondThem) {
+  for (const double distance : {0.5, 0.3, 0.25}) {
+    for (const bool pulls : {true, false}) {
+      LinkState state;
+      state.stiffness = 100.0;
+      state.elasticity = engine::Rings{{{40.0, 0.2}}};
+      state.pulls = pulls;
+      state.pushes = !pulls;
+      NetworkDescription scene = one_sided_scene(state, false);
+      scene.gravity = Vec3::Zero();
+      scene.links.clear();
+      scene.mats[1].position = Vec3(distance, 0.0, 0.0);
+      scene.state_links[0].rest_length = 0.4;
+      const double pressed = distance - 0.4;
+      const double stored = (pressed > 0.0) == pulls ? 50.0 * pressed * pressed : 0.0;
+      EXPECT_NEAR(make_world(scene).energy().elastic, stored, 1e-5) << distance << " m";
+    }
+  }
+}
+
+/// Two MATs that pass each other again and again in 1 dimension, each time through the rings about the other.
+TEST(Energy, OfOneSidedRingsIsConstantOnTheSideWithoutAForce) {
+  for (const bool pulls : {true, false}) {
+    SCOPED_TRACE(pulls ? "pulls" : "pushes");
+    LinkState state;
+    state.elasticity = ring_law();
+    state.pulls = pulls;
+    state.pushes = !pulls;
+    NetworkDescription scene;
+    scene.step = 2e-5;
+    scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.5, 0, 0)), fixed(Vec3::Zero())};
+    scene.links = {{1, 2, 20.0, 0.0, 0.0}};
+    scene.state_machines = {Behaving().state(state).state_machine};
+    scene.state_links = {{0, 1, 0, 0.1}};
+    World world = make_world(scene);
+    int passed = 0;
+    double before = 1.0;
+    for (int n = 0; n < 20'000; ++n) {
+      world.step();
+      passed += before * world.position(1).x() < 0.0 ? 1 : 0;
+      before = world.position(1).x();
+      const Energy energy = world.energy();
+      ASSERT_LT(std::abs(energy.integration_error()), 2e-3 * energy.largest) << "step " << n;
+      ASSERT_NEAR(energy.dissipated, 0.0, 1e-9 * energy.largest) << "step " << n;
+    }
+    EXPECT_GT(passed, 2);
+  }
+}
+
 /// A ball on a floor that can only push, at K' = K dt^2 / m.
 Energy after_bouncing(double number, int step_count) {
   NetworkDescription scene;

@@ -1,6 +1,9 @@
 // tests/plan/certificate_test.cpp -- what is not certified, and what is not surely unstable.
 #include <cmath>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +97,22 @@ TEST(Certificate, HoldsAtItsStepWithAViscosityThatGrowsWithTheSpeed) {
   }
 }
 
+TEST(Certificate, LetsARootOfTheSpeedChatterAtNoMoreThanTwoHundredthsOfTheSpeedOfAHand) {
+  for (const double exponent : {0.0, 0.5}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 1000.0);
+    scene.mats[1].velocity = Vec3(0.002, 0, 0);
+    join(scene, viscous(engine::Power{0.3, exponent}), 0.1);
+    scene.step = 0.98 * stability_at_start(scene).certified.step;
+    engine::World world(std::make_shared<const engine::Network>(scene));
+    double fastest = 0.0;
+    for (int n = 0; n < 2000; ++n) {
+      world.step();
+      fastest = std::max(fastest, world.velocity(1).norm());
+    }
+    EXPECT_LT(fastest, 0.02) << exponent;
+  }
+}
+
 TEST(Certificate, JudgesAViscosityAtTheSpeedThatADriveOrAWeightHoldsAgainstIt) {
   NetworkDescription pushed = mass_at(Vec3::Zero(), 1, 15.3);
   join(pushed, viscous(engine::Power{0.01, 3.0}), 0.0);
@@ -171,6 +190,45 @@ TEST(Certificate, IsGivenToLawsThatItsOwnSpringOrViscosityHolds) {
     NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 44100.0);
     join(scene, law, 0.0);
     EXPECT_TRUE(stability_at_start(scene).holds());
+  }
+}
+
+/// Why nothing is certain; empty where it is.
+std::string why_uncertain(const NetworkDescription& scene) {
+  const plan::Stability stability = stability_at_start(scene);
+  return stability.uncertainty ? stability.uncertainty->why : "";
+}
+
+/// 1 at a place, and 0 from so far of it on.
+Term window(const Term& where, double place, double width) {
+  return two(Operation::kMax, 1.0 - size(where - place) / width, 0.0);
+}
+
+TEST(Certificate, IsNotGivenToALawThatDrivesOnlyAtAFewSpeeds) {
+  const Term law = 0.05 * kV - 0.1 * kV * window(size(kV), 0.3701, 2e-3);
+  for (const bool is_elastic : {false, true}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 44100.0);
+    scene.links = {{0, 1, 10.0, 0.0, 0.0}};
+    join(scene, is_elastic ? state_machine(0.0, expression_law(law)) : viscous(expression_law(law)),
+         0.0);
+    EXPECT_NE(why_uncertain(scene).find("drives the motion"), std::string::npos)
+        << why_uncertain(scene);
+    EXPECT_FALSE(stability_at_start(scene).diverges());
+  }
+}
+
+TEST(Certificate, IsGivenToExpressionsThatOpposeEverySpeed) {
+  const Term smooth = one(Operation::kTanh, kV / 0.01);
+  const std::vector<Term> laws = {0.01 * kV * kV * kV, 0.02 * kV * size(kV), 0.05 * smooth,
+                                  0.05 * smooth / (1.0 + kV * kV)};
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 44100.0);
+    scene.links = {{0, 1, 10.0, 0.0, 0.0}};
+    NetworkDescription elastic = scene;
+    join(scene, viscous(expression_law(laws[i])), 0.0);
+    join(elastic, state_machine(0.0, expression_law(20.0 * kE + laws[i])), 0.0);
+    EXPECT_EQ(why_uncertain(scene), "") << i;
+    EXPECT_EQ(why_uncertain(elastic), "") << i;
   }
 }
 

@@ -148,6 +148,7 @@ TEST(Plan, IsNotCertainOfABendBesideAStiffVibration) {
   EXPECT_GT(largest_excursion(scene_at(2.6, 0.8), 2000), 1e3);
   EXPECT_TRUE(holds(0.3, 0.8));
   EXPECT_LT(largest_excursion(scene_at(0.3, 0.8), 20000), 0.2);
+  EXPECT_FALSE(holds(2.9, 0.25));
   EXPECT_TRUE(holds(2.6, 0.2));
   EXPECT_LT(largest_excursion(scene_at(2.6, 0.2), 20000), 0.2);
 }

@@ -32,6 +32,16 @@ TEST(Slope, OfLennardJonesGrowsWithTheEnergyOfTheApproach) {
   }
 }
 
+TEST(Slope, OfALawOfTheDistanceIsNotCertainWhereTheEndsPassEachOther) {
+  engine::StateMachine ball = state_machine(0.0, lennard_jones(2.0, 0.5));
+  EXPECT_EQ(largest_slope(ball, 0.5, 1, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
+  ball.states[0].pushes = false;
+  EXPECT_NE(largest_slope(ball, 0.5, 1, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
+  EXPECT_EQ(largest_slope(ball, 0.5, 3, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
+  ball.states[0].elasticity = engine::Rings{{{.stiffness = 2.0, .radius = 0.3}}};
+  EXPECT_NE(largest_slope(ball, 0.5, 1, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
+}
+
 TEST(Slope, OfATableIsThatOfItsSteepestPiece) {
   const engine::Table law{{-0.01, 0.0, 0.02, 0.03}, {-8.0, 0.0, 1.0, 1.0}};
 

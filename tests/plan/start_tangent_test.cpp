@@ -70,6 +70,21 @@ TEST(StartTangent, KnowsTheLimitOfAMassOnAMaxwellElement) {
   EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step, low, 1e-3 * low);
 }
 
+TEST(StartTangent, IsNotSureWhereFrictionThatIsSolvedHoldsTheStart) {
+  // A root of the speed is steeper than any number at rest. `leapfrog` solves it, so that it sticks there.
+  NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
+  scene.state_machines = {state_machine(0.0)};
+  scene.state_machines[0].states[0].dissipation = engine::Power{0.1, 0.5};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.02, 1e-6);
+
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
+
+  scene.state_machines[0].states[0].dissipation = engine::Power{-0.1, 0.5};  // it drives
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.02, 1e-6);
+}
+
 TEST(StartTangent, KnowsThatATieTakesEveryDirectionAlike) {
   NetworkDescription line = random_network(3);
   NetworkDescription space = line;

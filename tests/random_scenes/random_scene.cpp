@@ -528,16 +528,19 @@ step: {{rate_hz: {}, integrator: {}{}}}
                       most, 0.99 * kinetic, k, z);
   }
 
-  /// Gives some states another friction, or none, and some exits a condition that asks for it.
+  /// Gives some states another friction, or none, and some exits a condition that asks for it. One state
+  /// rubs at least, for a scene that asks for the `slip_m` of what never rubs is refused.
   std::string with_friction_of_states(std::string law, double stiffness) {
     const std::string opening = "exits: [";
+    const std::string none = "friction: none, ";
+    bool may_rub = law.find(opening) == std::string::npos;
     for (std::size_t exits = law.find(opening); exits != std::string::npos;) {
       const double size = static_cast<double>(friction_random_() % 1000 + 1) / 1000.0;
       std::string own;
       if (friction_random_() % 3 == 0) {
         own =
             friction_random_() % 3 == 0
-                ? "friction: none, "
+                ? none
                 : fmt::format(
                       "friction: {{static: {:.4g}, kinetic: {:.3g}, stiffness_n_per_m: {:.4g}}}, ",
                       size, 0.5 * size, (0.2 + 3.0 * size) * stiffness);
@@ -549,10 +552,12 @@ step: {{rate_hz: {}, integrator: {}{}}}
             "{{{}, when: {} > {:.4g}}}, ", law.substr(target, law.find(',', target) - target),
             friction_random_() % 2 == 0 ? "slip_m" : "0.001 * normal_force_n", 0.01 * size * size);
       }
+      may_rub = may_rub || own != none;
       law.insert(exits + opening.size(), more);
       law.insert(exits, own);
       exits = law.find(opening, exits + own.size() + opening.size());
     }
+    if (!may_rub) law.erase(law.find(none), none.size());
     return law;
   }
 

@@ -256,6 +256,82 @@ links:
   EXPECT_EQ(failure.find("within its limit"), std::string::npos) << failure;
 }
 
+/// Where a scene stands says nothing of the energy of its motion.
+TEST(ReachWatch, TheLargestEnergyCountsGravityFromTheStartOn) {
+  double at_origin = 0.0;
+  for (const char* const height : {"0", "1000"}) {
+    const auto loaded = loaded_scene_of(test::filled(R"(cordis: 1
+name: hanging
+space: 2
+step: {rate_hz: 1000}
+world: {gravity_m_per_s2: [0, -9.81]}
+liaisons: {k: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0, rest_m: 0.1}}
+parts:
+  pair:
+    matter:
+      a: {kind: fixed, at_m: [0, 0.1]}
+      m: {kind: mass, mass_kg: 0.01, at_m: [0, 0]}
+    links: [{liaison: k, between: [a, m]}]
+matter:
+  pair: {part: pair, translate_m: [0, <height>]}
+)",
+                                                     {{"height", height}}));
+    Simulation& simulation = loaded->simulation;
+    EventRoom events(64);
+    while (simulation.simulated_s() < 1.0) {
+      simulation.advance(simulation.steps_of_tick(), events);
+      loaded->energy.update(simulation.world());
+    }
+    const engine::Energy energy = loaded->energy.update(simulation.world());
+    EXPECT_FALSE(is_error_large(energy));
+    EXPECT_LT(energy.largest, 0.01) << "it falls by 2 cm at most";
+    if (at_origin == 0.0) at_origin = energy.largest;
+    EXPECT_NEAR(energy.largest, at_origin, 1e-6);
+  }
+}
+
+/// Each of its tangents is stable, and it gains energy all the same.
+TEST(ReachWatch, LetsGoWhereLinksTurnAboutSoFastThatTheyMakeEnergy) {
+  const std::string crumpled = R"(cordis: 1
+name: crumpled
+space: 2
+step: {rate_hz: 100, gesture_rate_hz: 100}
+liaisons: {k: {kind: spring_damper, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0, rest_m: 1}}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [0.1, 0.02], [0.03, 0.11], [0.12, 0.09]]}
+links:
+  - {liaison: k, between: ["m[0]", "m[1]"]}
+  - {liaison: k, between: ["m[0]", "m[2]"]}
+  - {liaison: k, between: ["m[1]", "m[3]"]}
+  - {liaison: k, between: ["m[2]", "m[3]"]}
+  - {liaison: k, between: ["m[1]", "m[2]"]}
+)";
+  const auto loaded = loaded_scene_of(crumpled);
+  EXPECT_TRUE(loaded->is_certain);
+  EXPECT_TRUE(loaded->may_turn);
+  const Alone seen = play_alone(crumpled, 20.0);
+  EXPECT_EQ(seen.bound, PassedBound::kEnergy);
+  EXPECT_FALSE(seen.is_beyond_reach);
+}
+
+/// A hand may bring in what turns them, later.
+TEST(ReachWatch, IsOfLinksThatHaveTooLittleEnergyToTurnToo) {
+  const auto loaded = loaded_scene_of(R"(cordis: 1
+name: pair
+space: 2
+step: {rate_hz: 1000}
+liaisons: {k: {kind: spring_damper, stiffness_n_per_m: 3200, viscosity_n_s_per_m: 0, rest_m: 0.2}}
+matter:
+  m: {kind: mass, mass_kg: 0.1, at_m: [[0, 0], [0.2, 0]], velocity_m_per_s: [0.5, 0]}
+links: [{liaison: k, between: ["m[0]", "m[1]"]}]
+)");
+  EXPECT_TRUE(loaded->is_certain);
+  EXPECT_TRUE(loaded->watches_energy());
+  EXPECT_EQ(loaded->passed_bound({}), PassedBound::kNone);
+  EXPECT_EQ(loaded->passed_bound({.makes_energy = true}), PassedBound::kEnergy);
+  EXPECT_FALSE(loaded->is_beyond_reach);
+}
+
 TEST(ReachWatch, TheLargestEnergyIsThatOfTheWholeRun) {
   const auto loaded = loaded_scene_of(
       moved("rate_hz: 10000", "at_m: 0.1",

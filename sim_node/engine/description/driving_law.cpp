@@ -2,7 +2,6 @@
 #include "sim_node/engine/description/driving_law.h"
 
 #include <algorithm>
-#include <cmath>
 #include <variant>
 
 namespace cordis::engine {
@@ -20,16 +19,10 @@ bool may_push_along(const Law& dissipation) noexcept {
   return false;
 }
 
-bool is_cut(const LinkState& state) noexcept {
-  if ((state.pulls && state.pushes) || std::isfinite(state.force_limit)) return false;
-  return !is_none(state.elasticity) && !std::holds_alternative<Power>(state.elasticity) &&
-         potential_expression(state.elasticity) == nullptr;
-}
-
 bool may_drive(const LinkState& state) noexcept {
   const bool asks_for_speed =
       !stores_energy(state.elasticity) && potential_expression(state.elasticity) == nullptr;
-  return asks_for_speed || may_push_along(state.dissipation) || is_cut(state);
+  return asks_for_speed || may_push_along(state.dissipation);
 }
 
 }  // namespace

@@ -6,8 +6,7 @@
 namespace cordis::engine {
 
 /// True if a state may bring in more energy than it has stored and taken. Such are an expression that
-/// asks for the speed, a dissipation that may push along, and a law other than a power of which a
-/// state that does not pull (push) has a part cut away: that part counts as dissipated. O(states).
+/// asks for the speed, and a dissipation that may push along. O(states).
 bool may_drive(const StateMachine& state_machine) noexcept;
 
 }  // namespace cordis::engine

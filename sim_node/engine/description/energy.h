@@ -31,12 +31,13 @@ struct Energy {
   double elastic = 0.0;  ///< in the links; below 0 for a moment where a link passes its rest length
   double gravity = 0.0;  ///< potential in the uniform gravity, 0 at the origin
   double dissipated = 0.0;  ///< taken since step 0 by the viscosity of links and medium, and by all
-                            ///< else of the tension of a link that is not the slope of a potential:
-                            ///< the cutting off of a clamped one, a function
+                            ///< else of the tension of a link that is not the slope of a potential,
+                            ///< as that of a function of the speed
   double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
   double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
                             ///< sum of LinkEvent::energy
   double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
+  double initial_gravity = 0.0;  ///< the part of gravity in it
   double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
                                ///< laws of the links store: of order dt^2; 0 for linear links and
                                ///< states in 1 dimension, and at changes of state

@@ -45,8 +45,31 @@ double energy_of_limited_spring(const StateTerm& term, double elongation) noexce
   return limited * (elongation - 0.5 * limited / term.stiffness);
 }
 
+/// True for a law that pulls what is longer and pushes what is shorter: what it stores is clamped as its
+/// elongation is.
+bool clamps_with_elongation(const Law& law) noexcept {
+  if (is_none(law)) return true;
+  if (const auto* power = std::get_if<Power>(&law)) return power->coefficient >= 0.0;
+  const auto* table = std::get_if<Table>(&law);
+  if (table == nullptr || elastic_tension(law, LawPoint{}) != 0.0) return false;
+  for (std::size_t i = 0; i < table->argument().size(); ++i) {
+    if (table->argument()[i] * table->value()[i] < 0.0) return false;
+  }
+  return true;
+}
+
+/// What Lennard-Jones stores that only pulls, or only pushes [J].
+double energy_of_half(const LennardJones& balls, bool pulls, double distance) noexcept {
+  const double of_no_force = std::pow(2.0, 1.0 / 6.0) * balls.diameter;
+  const double lowest = balls.cutoff > 0.0 ? std::min(of_no_force, balls.cutoff) : of_no_force;
+  const double away = std::abs(distance);
+  if (pulls) return balls.potential(std::max(away, lowest), 0.0);
+  return balls.potential(std::min(away, lowest), 0.0) - balls.potential(lowest, 0.0);
+}
+
 /// From where the energy of a law is integrated that has a limit [m]: there it is within the limit.
-double begin_of_integral(const Law& law, const LawPoint& link) noexcept {
+/// Ends that meet in 1 dimension pass each other: what one-sided rings store counts from one side on both.
+double begin_of_integral(const Law& law, const LawPoint& link, const StateTerm& term) noexcept {
   if (const Expression* expression = potential_expression(law))
     return expression->distance_of_no_potential(link);
   if (argument_of(law) != LawArgument::kDistance) return link.distance - link.elongation;
@@ -54,6 +77,7 @@ double begin_of_integral(const Law& law, const LawPoint& link) noexcept {
   const auto* balls = std::get_if<LennardJones>(&law);
   const double of_no_force = std::pow(2.0, 1.0 / 6.0);  // in diameters
   const bool is_endless = balls != nullptr && range == 0.0;
+  if (term.one_sided && balls == nullptr) return range;
   return std::copysign(is_endless ? of_no_force * balls->diameter : range, link.distance);
 }
 
@@ -148,8 +172,10 @@ void StateTable::Content::add_state(const LinkState& state,
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;
   }
+  const bool has_potential = stores_energy(state.elasticity) || term.elasticity.is_potential;
   term.limits_elastic =
-      state.force_limit < kUnlimited || (term.limited && term.elasticity.is_potential);
+      state.force_limit < kUnlimited ||
+      (term.one_sided && has_potential && !clamps_with_elongation(state.elasticity));
   term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
@@ -246,15 +272,23 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
   const Law& law = state(index).elasticity;
   if (is_none(law) || (!stores_energy(law) && potential_expression(law) == nullptr))
     return energy_of_limited_spring(term, link.elongation);
+  const auto* balls = std::get_if<LennardJones>(&law);
+  const bool is_limited = std::isfinite(state(index).force_limit);
+  // A distance below 0, in 1 dimension, has a tension of the other sign.
+  const bool pulls = link.distance < 0.0 ? term.min_tension < 0.0 : term.max_tension > 0.0;
+  if (balls != nullptr && term.stiffness == 0.0 && term.one_sided && !is_limited &&
+      (state(index).pulls || state(index).pushes))
+    return energy_of_half(*balls, pulls, link.distance);
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double distance) {
     const LawPoint point{distance, distance - rest_length, 0.0, link.mass_a, link.mass_b};
     const double whole = term.stiffness * point.elongation + elastic_tension(law, point);
     return std::min(term.max_tension, std::max(term.min_tension, whole));
   };
-  const double begin = begin_of_integral(law, link);
+  const double begin = begin_of_integral(law, link, term);
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
-  const double at_begin = is_of_distance ? potential(law, {begin}) : 0.0;
+  double at_begin = energy_of_limited_spring(term, begin - rest_length);
+  if (is_of_distance && pulls) at_begin += potential(law, {begin});  // else no force takes it away
   return at_begin + integral_over_distance(tension, begin, link.distance);
 }
 

@@ -52,8 +52,8 @@ class StateTable {
 
   /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, by
   /// quadrature of an expression that has a potential, and 0 of another. In a state with a force
-  /// limit it is the integral of the limited elastic tension. In a state that does not pull (push)
-  /// only what the spring and a power law store while they push (pull). Lennard-Jones: 0 at its cutoff.
+  /// limit, or that does not pull (push), it is the integral of the limited elastic tension.
+  /// Lennard-Jones: 0 at its cutoff.
   double stored_energy(StateIndex state, double distance, double rest_length,
                        const EndMasses& mass) const noexcept;
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the

@@ -230,6 +230,137 @@ std::vector<double> tried_speeds(const engine::LinkState& state, double speed) {
   return all;
 }
 
+/// Holds the tension over the speed of a state, less that of its elasticity at rest, against the speed: in
+/// a box of distances and speeds of one sign.
+class OppositionToMotion {
+ public:
+  /// @param box  its speed is not looked at
+  OppositionToMotion(const engine::LinkState& state, const LinkBox& box)
+      : state_(state), box_(box) {}
+
+  /// True if it surely opposes all speeds up to one, either way.
+  bool is_sure(double speed) const {
+    int boxes_left = kMaxBoxes;
+    return is_sure(speed, 1.0, boxes_left) && is_sure(speed, -1.0, boxes_left);
+  }
+
+ private:
+  static constexpr int kMaxBoxes = 4000;
+  static constexpr double kSlowest = 1e-9;  // of the speed
+
+  struct Part {
+    Interval distance;
+    Interval speed;  // either way: above 0
+  };
+
+  bool is_sure(double speed, double sign, int& boxes_left) const {
+    const double width = box_.distance.high - box_.distance.low;
+    std::vector<Part> parts{{box_.distance, {kSlowest * speed, speed}}};
+    while (!parts.empty()) {
+      if (--boxes_left < 0) return false;
+      const Part part = parts.back();
+      parts.pop_back();
+      if (opposes(part, sign)) continue;
+      Part lower = part;
+      Part upper = part;
+      const Interval& d = part.distance;
+      const Interval& v = part.speed;
+      if ((d.high - d.low) * v.high > (v.high - v.low) * width) {
+        lower.distance.high = upper.distance.low = 0.5 * (d.low + d.high);
+      } else {
+        lower.speed.high = upper.speed.low = std::sqrt(v.low * v.high);
+      }
+      parts.push_back(lower);
+      parts.push_back(upper);
+    }
+    return true;
+  }
+
+  bool opposes(const Part& part, double sign) const {
+    double least = state_.viscosity * part.speed.low;
+    double size = state_.viscosity * part.speed.high;
+    const auto add = [&](double low, double largest) {
+      least += low;
+      size += largest;
+    };
+    if (const auto* viscous = std::get_if<engine::Expression>(&state_.dissipation)) {
+      const Interval value = values_of(viscous->program, box_of(part, sign));
+      const Interval at_rest = values_of(viscous->program, box_at_rest(part));
+      const Interval slope = slope_from_rest(viscous->program, part, sign);
+      const double rest = sign > 0.0 ? at_rest.low : -at_rest.high;
+      const double by_slope =
+          rest + slope.low * (slope.low >= 0.0 ? part.speed.low : part.speed.high);
+      add(larger_of(sign > 0.0 ? value.low : -value.high, by_slope), size_of(value));
+    } else if (!is_none(state_.dissipation)) {
+      const double low = min_viscous(part, sign);
+      add(low, std::abs(low));
+    }
+    const auto* elastic = std::get_if<engine::Expression>(&state_.elasticity);
+    if (elastic != nullptr && !elastic->is_potential()) {
+      const LinkBox moving = box_of(part, sign);
+      const Interval value = values_of(elastic->program, moving);
+      const Interval slope = slope_from_rest(elastic->program, part, sign);
+      const double by_slope = slope.low * (slope.low >= 0.0 ? part.speed.low : part.speed.high);
+      add(larger_of(by_slope, above_rest(elastic->program, part, sign)), size_of(value));
+    }
+    return least >= -kNothing * size;
+  }
+
+  LinkBox box_of(const Part& part, double sign) const {
+    LinkBox box = box_;
+    box.distance = part.distance;
+    box.speed = sign > 0.0 ? part.speed : Interval{-part.speed.high, -part.speed.low};
+    return box;
+  }
+  LinkBox box_at_rest(const Part& part) const { return box_of({part.distance, {}}, 1.0); }
+
+  /// The mean slope from rest to any speed of the part lies within; over the distances too.
+  Interval slope_from_rest(const engine::Program& program, const Part& part, double sign) const {
+    return enclosure_of(program, box_of({part.distance, {0.0, part.speed.high}}, sign)).over_speed;
+  }
+
+  /// The least by which it is above rest, from the middle of the distances on.
+  double above_rest(const engine::Program& program, const Part& part, double sign) const {
+    const double middle = 0.5 * (part.distance.low + part.distance.high);
+    const double away = 0.5 * (part.distance.high - part.distance.low);
+    const Part there{{middle, middle}, part.speed};
+    const Interval moving = values_of(program, box_of(there, sign));
+    const Interval resting = values_of(program, box_at_rest(there));
+    const double above = sign > 0.0 ? moving.low - resting.high : resting.low - moving.high;
+    const Interval fast = enclosure_of(program, box_of(part, sign)).over_distance;
+    const Interval slow = enclosure_of(program, box_at_rest(part)).over_distance;
+    return above - away * std::max(std::abs(fast.high - slow.low), std::abs(slow.high - fast.low));
+  }
+
+  /// The least that a table or a power opposes the speed; it is at an end or at a corner.
+  double min_viscous(const Part& part, double sign) const {
+    const auto tension = [&](double speed) {
+      engine::LawPoint point;
+      point.speed = sign * speed;
+      return sign * viscous_tension(state_.dissipation, point);
+    };
+    double least = std::min(tension(part.speed.low), tension(part.speed.high));
+    if (const auto* table = std::get_if<engine::Table>(&state_.dissipation)) {
+      for (const double corner : table->argument()) {
+        const double speed = sign * corner;
+        if (speed > part.speed.low && speed < part.speed.high)
+          least = std::min(least, tension(speed));
+      }
+    }
+    return least;
+  }
+
+  /// The larger of two lower bounds, one of which may be no number.
+  static double larger_of(double a, double b) { return std::isnan(a) || b > a ? b : a; }
+  static double size_of(const Interval& value) {
+    const double size = std::max(std::abs(value.low), std::abs(value.high));
+    return std::isfinite(size) ? size : 0.0;
+  }
+
+  const engine::LinkState& state_;
+  const LinkBox& box_;
+};
+
 }  // namespace
 
 bool drives_motion(const engine::LinkState& state, const Interval& distance, double rest_length,
@@ -263,7 +394,9 @@ bool drives_motion(const engine::LinkState& state, const Interval& distance, dou
       }
     }
   }
-  return false;
+  if (is_table && !asks) return false;
+  const LinkBox box{distance, {}, rest_length, reach.mass_a, reach.mass_b};
+  return !OppositionToMotion(state, box).is_sure(speed);
 }
 
 }  // namespace cordis::plan

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "sim_node/plan/stability/law_energy.h"
@@ -242,6 +244,35 @@ void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
   }
 }
 
+namespace {
+
+/// The largest slopes of links with states: found once for all that are alike but for rounding.
+class SlopesOfLinks {
+ public:
+  SlopesOfLinks(const NetworkDescription& network, const Reach& reach)
+      : network_(network), reach_(reach) {}
+
+  const Slope& slope_of(const engine::StateLink& link) {
+    const Reach here = reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+    const Key key{link.state_machine, static_cast<float>(link.rest_length), here.mass_a.low,
+                  here.mass_b.low, here.held};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    const engine::StateMachine& machine = network_.state_machines[link.state_machine];
+    return known_.emplace(key, largest_slope(machine, link.rest_length, network_.dimension, here))
+        .first->second;
+  }
+
+ private:
+  using Key = std::tuple<std::uint32_t, float, double, double, bool>;
+
+  const NetworkDescription& network_;
+  const Reach& reach_;
+  std::map<Key, Slope> known_;
+};
+
+}  // namespace
+
 LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_factor) {
   LiaisonGraph graph;
   for (const engine::Mat& mat : network.mats) {
@@ -257,11 +288,11 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         {link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index++}});
   }
   const Reach reach = reach_of(network, reach_factor);
+  graph.turning = turning_of(network, reach);
   index = 0;
+  SlopesOfLinks slopes(network, reach);
   for (const engine::StateLink& link : network.state_links) {
-    Slope slope =
-        largest_slope(network.state_machines[link.state_machine], link.rest_length,
-                      network.dimension, reach_between(reach, network, {link.mat_a}, {link.mat_b}));
+    Slope slope = slopes.slope_of(link);
     slope.stiffness = std::max(slope.stiffness,
                                stiffness_across_at(network.state_machines[link.state_machine],
                                                    network.dimension, start_point(network, link)));

@@ -10,6 +10,7 @@
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/turning.h"
 
 namespace cordis::plan {
 
@@ -62,6 +63,7 @@ struct LiaisonGraph {
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
   bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
+  Turning turning;
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
   void set_step(const engine::NetworkDescription& network, double step);

@@ -398,6 +398,11 @@ double flattest_slope(const engine::Program& program, const LinkBox& box, double
   return -steepest(program, box, 0, fall, enough, kFewBisections);
 }
 
+ProgramEnclosure enclosure_of(const engine::Program& program, const LinkBox& box) {
+  const Enclosed enclosed = Evaluation(box).enclose(program);
+  return {enclosed.value, enclosed.slope[0], enclosed.slope[1]};
+}
+
 Interval values_of(const engine::Program& program, const LinkBox& box) {
   return Evaluation(box).enclose(program).value;
 }

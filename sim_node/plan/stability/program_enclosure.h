@@ -43,6 +43,15 @@ SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& bo
 /// bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest);
 
+/// What the value and its slopes lie within over a box; any number where it is not known.
+struct ProgramEnclosure {
+  Interval value;
+  Interval over_distance;
+  Interval over_speed;
+};
+
+ProgramEnclosure enclosure_of(const engine::Program& program, const LinkBox& box);
+
 /// What the value lies within over the box.
 Interval values_of(const engine::Program& program, const LinkBox& box);
 

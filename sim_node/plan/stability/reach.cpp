@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/drive_extremes.h"
@@ -109,6 +111,23 @@ double terminal_speed(const engine::LinkState& state, double force) {
   return speed;
 }
 
+/// What links with states bring in: found once for all that are alike but for rounding.
+class BroughtByLinks {
+ public:
+  double brought(const engine::NetworkDescription& network, const engine::StateLink& link) {
+    const engine::LawPoint start = start_point(network, link);
+    const Key key{link.state_machine, static_cast<float>(start.distance),
+                  static_cast<float>(link.rest_length), start.mass_a, start.mass_b};
+    const auto found = known_.find(key);
+    if (found != known_.end()) return found->second;
+    return known_.emplace(key, brought_by(network, link)).first->second;
+  }
+
+ private:
+  using Key = std::tuple<std::uint32_t, float, float, double, double>;
+  std::map<Key, double> known_;
+};
+
 }  // namespace
 
 double energy_at(const Reach& reach) {
@@ -143,11 +162,12 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
   double energy = energy_brought(network);
   std::uint32_t index = 0;
+  BroughtByLinks known;
   for (const engine::StateLink& link : network.state_links) {
     const double distance =
         (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
     reach.elongation = std::max({reach.elongation, distance, std::abs(link.rest_length)});
-    const double brought = brought_by(network, link);
+    const double brought = known.brought(network, link);
     if (std::isfinite(brought)) {
       energy += brought;
     } else if (!reach.endless) {

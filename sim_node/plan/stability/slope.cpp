@@ -15,6 +15,8 @@ constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 constexpr const char* kPullsWhereEndsMeet =
     "it still pulls where its ends meet, and turns there without a limit";
+constexpr const char* kPassesThrough =
+    "nothing keeps its ends from passing each other, and there its force jumps";
 constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
@@ -145,6 +147,21 @@ double variation_of(const engine::Law& law, double largest) {
   return largest - least;
 }
 
+/// True if the law rises without a limit towards 0, and less beyond: what diverges there saturates.
+bool is_root(const engine::Law& law) {
+  const auto* power = std::get_if<engine::Power>(&law);
+  return power != nullptr && power->exponent < 1.0;
+}
+
+/// The viscosity with which a root of the speed swings at a hundredth of the speed of a hand [N s/m]. Slower
+/// than that it is steeper, and may chatter. What chatters sees its force over its speed, not its tangent.
+double viscosity_of_root(const engine::Law& law, double speed) {
+  constexpr double kSlowest = 0.01;
+  engine::LawPoint slow;
+  slow.speed = kSlowest * speed;
+  return std::max(viscous_tension(law, slow), 0.0) / slow.speed;
+}
+
 Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, const Reach& reach) {
   const auto* elastic = std::get_if<engine::Expression>(&state.elasticity);
   const auto* viscous = std::get_if<engine::Expression>(&state.dissipation);
@@ -158,10 +175,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   spring.turns = turns;
   if (is_power) spring.argument = std::max(stretch.longer, stretch.shorter);
   const double speed = relative_speed(state, reach);
-  const auto* viscous_power = std::get_if<engine::Power>(&state.dissipation);
-  const bool is_viscous_root = viscous_power != nullptr && viscous_power->exponent < 1.0;
-  // The slope of a root is followed up to a hundredth of this.
-  engine::LawRange damper{is_viscous_root ? reach.speed : speed, rest_length};
+  engine::LawRange damper{speed, rest_length};
   damper.viscous = true;
   if (elastic != nullptr) {
     add_expression(elastic->program, stretch, rest_length, turns, speed, reach, slope);
@@ -178,6 +192,9 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     add_expression(viscous->program, stretch, rest_length, turns, speed, reach, slope);
     if (was_sure && slope.uncertainty != nullptr)
       slope.viscosity += sampled(state.dissipation, damper);
+  } else if (is_root(state.dissipation)) {
+    slope.viscosity += viscosity_of_root(state.dissipation, reach.speed);
+    slope.bounded = false;
   } else {
     const engine::LawSlope law = engine::largest_slope(state.dissipation, damper);
     slope.viscosity += law.value;
@@ -199,6 +216,13 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
       rest_length > 0.0 && stretch.shorter >= rest_length) {
     slope.uncertainty = kCrushed;
   }
+  // In 1-D the ends pass each other, and what pushed before pulls then, as far as `pushes` is concerned.
+  const bool is_of_distance = std::holds_alternative<engine::LennardJones>(state.elasticity) ||
+                              std::holds_alternative<engine::Rings>(state.elasticity);
+  if (!turns && !state.pushes && is_of_distance) {
+    slope.bounded = false;
+    slope.uncertainty = kPassesThrough;
+  }
   if (turns && state.pulls) {
     const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
     const double elongation = nearest - rest_length;
@@ -211,12 +235,6 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     }
   }
   return slope;
-}
-
-/// True if the law rises without a limit towards 0, and less beyond: what diverges there saturates.
-bool is_root(const engine::Law& law) {
-  const auto* power = std::get_if<engine::Power>(&law);
-  return power != nullptr && power->exponent < 1.0;
 }
 
 /// True if the law of a state has a tangent there: it is neither let go of nor at its limit.
@@ -402,7 +420,9 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
     return tangent;
   }
   tangent.stiffness = stiffness;
-  const bool bends = !has_root && !is_root(state.dissipation);
+  const bool has_viscous_root = is_root(state.dissipation);
+  tangent.sticks = has_viscous_root && std::get<engine::Power>(state.dissipation).coefficient > 0.0;
+  const bool bends = !has_root && !has_viscous_root;
   tangent.viscosity = state.viscosity + (bends ? rise(viscous, 0.0) : 0.0);
   return tangent;
 }

@@ -133,6 +133,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::StateLink& link : network.state_links) {
     const Tangent tangent =
         tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
+    if (tangent.sticks && weights.viscosity_of_state_link(index) == 0.0) has_limit_ = false;
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);
