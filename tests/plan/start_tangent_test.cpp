@@ -207,6 +207,20 @@ TEST(StartTangent, TakesAPowerAtItsRestForFlat) {
   EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-2 * limit);
 }
 
+TEST(StartTangent, CountsTheFallOfARootAndNotItsRise) {
+  engine::LinkState root;
+  root.elasticity = engine::Power{.coefficient = -6.0, .exponent = 0.5};
+  NetworkDescription scene = mass_on_two(60.0, 0.0, root);
+  const double distance = scene.mats[1].position.x() - scene.mats[0].position.x();
+  scene.state_links[0].rest_length = distance - 0.01;  // it falls by 3 / sqrt(0.01) = 30 N/m there
+  const double limit = 2.0 * std::sqrt(0.03 / 30.0);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-3 * limit);
+
+  scene.state_machines[0].states[0].elasticity = engine::Power{.coefficient = 6.0, .exponent = 0.5};
+  const double of_spring = 2.0 * std::sqrt(0.03 / 60.0);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), of_spring, 1e-3 * of_spring);
+}
+
 TEST(StartTangent, NeverEndsWhereNothingPulls) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
 

@@ -350,6 +350,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   sim::PartnerWatch partners(network);
   TurnWatch turns(network);
   const plan::ReachLimit reach = plan::reach_limit(network);
+  const double turns_from = stability_of(network).turning.energy;  // watched, not certified
   // A hand that pushes 0.05 kg for one step.
   const double push = 0.1 * network.step;
   const double chatter = chatter_of(network);
@@ -403,6 +404,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
       if (!(brought.unforeseen() > 0.1 * brought.energy())) run.growth = "laws bring in ever more";
       return run;
     }
+    if (brought.energy() > turns_from) return run;
     double gain =
         energy.integration_error() - std::max(1.0, share) * jumps.energy() - kinetic_offset;
     // What chatters takes up what the steps make, again and again: the motion itself is bounded.
@@ -519,7 +521,7 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
 NetworkDescription held_at_rest(NetworkDescription network) {
   NetworkDescription still = network;  // shows the forces at rest
   still.integrator = engine::IntegratorKind::kCordis;
-  still.step = 1e-9;
+  still.step = 1e-14;
   World probe = world_of(still);
   probe.step();
   constexpr double kFar = 1e6;  // [m]

@@ -161,7 +161,8 @@ const cases = {
   'a key stands in the view at its port, as wide as its pitch, filled as far as it is down': async ({ page }) => {
     const key = (await legendOf(page)).find(([mark]) => mark === 'key');
     assert.deepEqual(key, ['key', 'key in true size, filled as far as it is down', palettes.dark.port]);
-    // Ink on the sheet of marks at places of the key, with how far it is down in the same frame.
+    // Ink on the sheet of marks at places of the key, with how far it is down in the same frame. The key is about 12 pixels
+    // high: beside its outline one pixel has to do.
     const seen = () =>
       page.evaluate(
         async ([mat, pitch, way]) => {
@@ -169,13 +170,13 @@ const cases = {
           const sheet = document.querySelector('#marks');
           const box = sheet.getBoundingClientRect();
           const [x, y] = window.viz.position(mat);
-          const inkAt = (across, share) => {
+          const inkAt = (across, share, around = 1) => {
             const place = window.viz.screenOf([x + across * pitch, -share * way, 0]);
             const [left, top] = [place.x - box.left, place.y - box.top].map((value) => Math.round((value * sheet.width) / box.width));
-            return sheet.getContext('2d').getImageData(left - 1, top - 1, 3, 3).data.some((byte, i) => i % 4 === 3 && byte > 0);
+            return sheet.getContext('2d').getImageData(left - around, top - around, 1 + 2 * around, 1 + 2 * around).data.some((byte, i) => i % 4 === 3 && byte > 0);
           };
           const [left, right, beside] = [-0.5, 0.5, 0.8].map((across) => inkAt(across, 0.5));
-          return { down: -y / way, left, right, beside, end: inkAt(0.2, 1), below: inkAt(0.2, 1.5), high: inkAt(0.2, 0.3), low: inkAt(0.2, 0.8) };
+          return { down: -y / way, left, right, beside, end: inkAt(0.2, 1), below: inkAt(0.2, 1.5), high: inkAt(0.2, 0.3, 0), low: inkAt(0.2, 0.8, 0) };
         },
         [PORT, PITCH_M, WAY_M],
       );

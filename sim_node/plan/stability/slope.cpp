@@ -408,7 +408,8 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
   Tangent tangent;
   tangent.tension = state.stiffness * elongation + elastic(elongation);
   const bool has_root = is_root(state.elasticity);
-  const double stiffness = state.stiffness + (has_root ? 0.0 : rise(elastic, elongation));
+  const double slope = rise(elastic, elongation);  // that of a root saturates where it rises
+  const double stiffness = state.stiffness + (has_root ? std::min(slope, 0.0) : slope);
   // One that only pushes and just touches has a tangent on one side alone.
   constexpr double kTouching = 1e-6;
   const double margin = kTouching * std::abs(stiffness * point.distance);
