@@ -335,8 +335,8 @@ bool has_force_limit(const NetworkDescription& network) {
   });
 }
 
-/// True if an elasticity asks for the speed. Its energy is work, which the steps take half a period apart from the
-/// motion: up to three swings near the limit.
+/// True if an elasticity asks for the speed. What it stores and gives back counts as work, which near the limit
+/// swings by several times the energy of the motion: the motion itself is bounded.
 bool has_work_of_speed(const NetworkDescription& network) {
   return std::ranges::any_of(network.state_machines, [](const engine::StateMachine& each) {
     return std::ranges::any_of(each.states, [](const engine::LinkState& state) {
@@ -374,6 +374,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   const bool is_cordis = network.integrator == engine::IntegratorKind::kCordis;
   const double kinetic_offset = is_cordis ? 0.0 : 0.25 * fall_of_one_step(network);
   const bool limits_force = has_force_limit(network);
+  const bool works_by_speed = has_work_of_speed(network);
   JumpWatch jumps(network);
   double rounding = 0.0;
   Outcome run;
@@ -422,7 +423,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     double gain =
         energy.integration_error() - std::max(1.0, share) * jumps.energy() - kinetic_offset;
     // What chatters takes up what the steps make, again and again: the motion itself is bounded.
-    if (chatter > 0.0) gain = std::min(gain, whole);
+    if (chatter > 0.0 || works_by_speed) gain = std::min(gain, whole);
     const double error = gain / brought.energy();
     run.worst = std::max(run.worst, error);
     if (!(error < share)) {
