@@ -304,6 +304,16 @@ TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
   EXPECT_LT(std::abs(after_swinging(state, 1e-4).elastic_error), 1e-3 * largest);
 }
 
+/// MATs 0 and 1, which act on each other within 2 m and rest 0.1 m apart.
+engine::SetLiaison set_of_two() {
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = 2.0;
+  set.rest_length = 0.1;
+  return set;
+}
+
 /// Pairs of sets far beyond their force limit, with and without viscosity.
 TEST(Energy, OfAPairWithAForceLimitIsTheIntegralOfItsTension) {
   for (const bool pulls : {true, false}) {
@@ -319,12 +329,7 @@ TEST(Energy, OfAPairWithAForceLimitIsTheIntegralOfItsTension) {
       scene.step = 2e-5;
       scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.02, 0.05, 0), Vec3(0.1, 0, 0))};
       scene.state_machines = {Behaving().state(state).state_machine};
-      engine::SetLiaison set;
-      set.set_p = {0};
-      set.set_q = {1};
-      set.range = 2.0;
-      set.rest_length = 0.1;
-      scene.sets = {set};
+      scene.sets = {set_of_two()};
       World world = make_world(scene);
       for (int n = 0; n < 10'000; ++n) {
         world.step();
@@ -406,12 +411,7 @@ NetworkDescription one_sided_scene(const LinkState& state, bool as_set) {
   scene.links = {{1, 2, 20.0, 0.0, 0.0}};
   scene.state_machines = {Behaving().state(state).state_machine};
   if (as_set) {
-    engine::SetLiaison set;
-    set.set_p = {0};
-    set.set_q = {1};
-    set.range = 2.0;
-    set.rest_length = 0.1;
-    scene.sets = {set};
+    scene.sets = {set_of_two()};
   } else {
     scene.state_links = {{0, 1, 0, 0.1}};
   }
