@@ -106,6 +106,8 @@ void StatusPublisher::publish() {
   mismatches_.report(now);
   rejoins_.report(now);
   rate_.update(now, status_.ticks());
+  const double target_hz = std::exchange(target_rate_hz_, status_.target_rate_hz());
+  if (target_hz > 0.0 && target_hz != target_rate_hz_) rate_.restart(now, status_.ticks());
   status_.reached_rate_hz(rate_.reached_hz());
   status_.mean_rate_hz(rate_.mean_hz());
   status_.sequence_number(status_.sequence_number() + 1);

@@ -54,6 +54,7 @@ class StatusPublisher {
   msg::NodeStatus status_;
   std::chrono::steady_clock::time_point begun_;
   TickRate rate_;
+  double target_rate_hz_ = 0.0;  // published last
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;

@@ -27,4 +27,8 @@ void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
   last_ = now;
 }
 
+void TickRate::restart(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
+  first_ = {now_nsec, ticks};
+}
+
 }  // namespace cordis::node

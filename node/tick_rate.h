@@ -13,8 +13,11 @@ class TickRate {
 
   void update(std::int64_t now_nsec, std::uint64_t ticks) noexcept;
 
+  /// The loop aims at another rate from now on: the mean begins again.
+  void restart(std::int64_t now_nsec, std::uint64_t ticks) noexcept;
+
   double reached_hz() const noexcept { return reached_hz_; }  ///< lately
-  double mean_hz() const noexcept { return mean_hz_; }        ///< since the ticks began
+  double mean_hz() const noexcept { return mean_hz_; }  ///< since the ticks began, or restart()
 
  private:
   struct Look {

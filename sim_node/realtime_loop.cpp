@@ -22,7 +22,7 @@ double pace_of(const SceneLoop& loop) noexcept {
 
 }  // namespace
 
-void run_realtime(SceneLoop& loop) {
+void run_realtime(SceneLoop& loop, node::StatusPublisher& status) {
   const node::RealtimeGrant grant = node::make_realtime(kLoopPriority);
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
@@ -37,6 +37,7 @@ void run_realtime(SceneLoop& loop) {
   while (!loop.finished()) {
     if (loop.time_scale() != 1.0 && loop.devices().real_devices().are_played()) {
       loop.set_time_scale(1.0);
+      status.publish_now();
       spdlog::info("a device with motors plays: slow motion ends");
     }
     if (pace.rate_hz() != pace_of(loop)) {

@@ -68,6 +68,7 @@ bool SceneLoop::execute() {
   inputs_.command(*request);
   if (is_forced_) simulation().keep_devices();
   mailbox_.report_steps_left(runner_.steps_left());
+  if (request->source->verb == msg::VERB_LOAD) set_time_scale(1.0);
   mailbox_.executed();
   if (new_scene) submit_frame();
   record_state();

@@ -36,8 +36,9 @@ class SceneLoop {
   /// True when a stop is asked for, the scene diverged, or the duration is over.
   bool finished() const noexcept;
 
-  /// Executes the request that waits, if any. @return false when it brings another scene, and this
-  /// one stays paused until its frames and events are published
+  /// Executes the request that waits, if any. A scene that is loaded begins in real time. @return
+  /// false when it brings another scene, and this one stays paused until its frames and events are
+  /// published
   bool execute();
   /// Executes requests without real time, and waits a while when the scene is paused.
   /// @return whether it moves

@@ -14,6 +14,17 @@
 #include "sim_node/run/thread_count.h"
 
 namespace cordis::sim {
+namespace {
+
+/// Slow motion: the loop aims at fewer ticks per second.
+void report_time_scale(msg::NodeStatus& status, double time_scale) {
+  if (time_scale == 1.0) return;
+  status.target_rate_hz(status.target_rate_hz() * time_scale);
+  const std::string text = pace_text(time_scale);
+  status.text(status.text().empty() ? text : status.text() + "; " + text);
+}
+
+}  // namespace
 
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
@@ -32,7 +43,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       status_(participant_, msg::KIND_SIM_NODE, start.epoch,
               [this](msg::NodeStatus& status) {
                 snapshot_.fill(status, devices_.refusal(), devices_.loops());
-                status.target_rate_hz(status.target_rate_hz() * loop_.time_scale());
+                report_time_scale(status, loop_.time_scale());
                 status.lost_events(loop_.lost_events());
               }),
       control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {}
@@ -79,7 +90,7 @@ int Session::run() {
 void Session::run_loop() {
   switch (start_.launch.clock) {
     case config::Clock::kRealtime:
-      return run_realtime(loop_);
+      return run_realtime(loop_, status_);
     case config::Clock::kLockstep:
       return LockstepLoop(loop_, participant_).run();
     case config::Clock::kAsap:

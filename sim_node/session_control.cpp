@@ -15,6 +15,12 @@
 
 namespace cordis::sim {
 
+std::string pace_text(double time_scale) {
+  return time_scale == 1.0
+             ? "plays in real time"
+             : "plays " + config::number_text(time_scale) + " times as fast as in real time";
+}
+
 SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
                                dds::Participant& participant, DeviceLink& devices,
                                StatusSnapshot& snapshot, SceneLoop& loop,
@@ -69,20 +75,15 @@ node::Answer SessionControl::change_time_scale(const std::string& argument) {
     return {false, real + " is no simulated device: it plays in real time alone"};
   loop_.set_time_scale(scale);
   status_.publish_now();
-  return {true, scale == 1.0
-                    ? "plays in real time"
-                    : "plays " + config::number_text(scale) + " times as fast as in real time"};
+  return {true, pace_text(scale)};
 }
 
-/// In the thread of the commands. A scene that is loaded begins in real time.
+/// In the thread of the commands.
 node::Answer SessionControl::execute(msg::ControlVerb verb,
                                      const std::function<node::Answer()>& command) {
   const auto before = executor_.scene();
   node::Answer answer = command();
-  if (verb == msg::VERB_LOAD && answer.accepted) {
-    loop_.set_time_scale(1.0);
-    status_.publish_now();
-  }
+  if (verb == msg::VERB_LOAD && answer.accepted) status_.publish_now();
   if (executor_.scene() != before) devices_.play(*executor_.scene());
   snapshot_.change_shadow(loop_.runner().loaded_scene().shadow);
   return answer;

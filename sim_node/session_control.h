@@ -18,6 +18,9 @@
 
 namespace cordis::sim {
 
+/// Simulated time per real time as words: `plays 0.1 times as fast as in real time`.
+std::string pace_text(double time_scale);
+
 /// Executes commands in a thread of its own, and fits to the scene what depends on it: its published
 /// description, the demands on devices, the figures of the status.
 class SessionControl {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "node/config/mapping_reader.h"
-#include "node/time.h"
 
 namespace cordis::device {
 namespace {
@@ -33,11 +32,12 @@ double approach(double value, double goal, double step) noexcept {
 }  // namespace
 
 Pointer::Pointer(const MockSettings& mechanics, const PointerSettings& settings,
-                 const AxisLayout& layout)
+                 const AxisLayout& layout, ClockFunction clock)
     : settings_(settings),
       layout_(layout),
       period_s_(1.0 / layout.rate_hz),
       is_ring_(mechanics.hand.holds),
+      clock_(clock),
       mock_(held(without_gestures(mechanics, layout)), layout) {
   start(Role::kMass);
 }
@@ -87,16 +87,15 @@ void Pointer::take_target() noexcept {
   PointerTarget target;
   if (port_.target.take(target) && all_finite(target.target_m, kMaxAxes)) {
     newest_ = target;
-    silent_s_ = 0.0;
+    received_nsec_ = clock_();
     if (pending_number_ == 0) {
       pending_number_ = newest_.number;
       pending_period_ = period_;
     }
-  } else {
-    silent_s_ += period_s_;
   }
   const bool held_before = holds_;
-  holds_ = newest_.holds && silent_s_ < settings_.silence_s;
+  const double silent_s = static_cast<double>(clock_() - received_nsec_) * 1e-9;
+  holds_ = newest_.holds && silent_s < settings_.silence_s;
   if (!holds_) return;
   if (is_away_ || !held_before) appear();
   for (int a = 0; a < layout_.count; ++a) {
@@ -154,7 +153,7 @@ void Pointer::record_command(const AxisValues& commanded) noexcept {
   command_ = commanded;
   if (pending_number_ == 0 || period_ < pending_period_ + 1) return;
   feel_.felt_number = pending_number_;
-  feel_.felt_nsec = node::monotonic_nsec();
+  feel_.felt_nsec = clock_();
   pending_number_ = 0;
 }
 

@@ -8,6 +8,7 @@
 #include "device_node/drivers/driver.h"
 #include "device_node/drivers/mock.h"
 #include "device_node/drivers/pointer_port.h"
+#include "node/time.h"
 
 namespace cordis::device {
 
@@ -26,13 +27,16 @@ struct PointerSettings {
 /// A target comes every 16 ms or so. The hand follows it with a lag of kLag and no faster than the
 /// speed limit, so that no target makes a jump of force. An axis that is not held keeps its hand where
 /// it was when the finger is in a ring (`holds`), and is free otherwise. A hand that lets go fades.
-/// Time counts in periods: a page is silent after so many periods without a word.
+/// The hand moves in simulated time. A page is silent after `silence_s` of real time without a word.
 class Pointer final : public Driver {
  public:
   static constexpr double kLag = 0.008;  ///< [s]
 
+  using ClockFunction = std::int64_t (*)() noexcept;  ///< CLOCK_MONOTONIC [ns]
+
   /// @throws std::invalid_argument as Mock does
-  Pointer(const MockSettings& mechanics, const PointerSettings& settings, const AxisLayout& layout);
+  Pointer(const MockSettings& mechanics, const PointerSettings& settings, const AxisLayout& layout,
+          ClockFunction clock = &node::monotonic_nsec);
 
   bool can_play(Role) const noexcept override { return true; }
   void start(Role role) noexcept override;
@@ -63,13 +67,14 @@ class Pointer final : public Driver {
   AxisLayout layout_;
   double period_s_;
   bool is_ring_;
+  ClockFunction clock_;
   Mock mock_;
   PointerPort port_;
   PointerTarget newest_;
   std::array<Axis, kMaxAxes> axes_{};
   AxisValues command_{};
   Role role_ = Role::kMass;
-  double silent_s_ = 0.0;
+  std::int64_t received_nsec_ = 0;  // when the newest target was taken
   bool holds_ = false;
   bool is_away_ = false;
   std::uint64_t period_ = 0;

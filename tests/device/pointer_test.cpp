@@ -42,7 +42,8 @@ MockSettings ring_mechanics(bool is_ring) {
 /// A pointer and the page that leads it.
 struct Led {
   explicit Led(const PointerSettings& settings = {}, bool is_ring = true)
-      : pointer(ring_mechanics(is_ring), settings, ring_layout()) {
+      : pointer(ring_mechanics(is_ring), settings, ring_layout(),
+                []() noexcept { return now_nsec; }) {
     pointer.start(Role::kMass);
   }
 
@@ -62,6 +63,7 @@ struct Led {
     command[0] = force_n;
     bool present = true;
     for (int n = 0; n < periods; ++n) {
+      now_nsec += period_nsec;
       const bool alive = pointer.begin_period();
       present = pointer.read(sensed) && alive;
       static_cast<void>(pointer.change_command(command, 0.2));
@@ -86,6 +88,8 @@ struct Led {
     return newest;
   }
 
+  static inline std::int64_t now_nsec = 0;
+  std::int64_t period_nsec = 1'000'000;  // longer in slow motion
   Pointer pointer;
   AxisValues sensed{};
   std::uint64_t number = 0;
@@ -123,13 +127,24 @@ TEST(Pointer, LetsGoWhenThePageIsSilentAndThenIsAway) {
   Led led(settings);
   led.say(true, 1, 0.01, 0.0);
   led.live(1);
-  EXPECT_TRUE(led.live(499)) << "500 ms since the last word";
+  EXPECT_TRUE(led.live(499)) << "499 ms since the last word";
   EXPECT_TRUE(led.feel().holds);
   led.live(2);
   EXPECT_FALSE(led.feel().holds);
   EXPECT_TRUE(led.live(145)) << "the hand fades";
   EXPECT_FALSE(led.live(10));
   EXPECT_TRUE(led.pointer.is_yielding());
+}
+
+TEST(Pointer, InSlowMotionThePageIsSilentAfterTheSameRealTime) {
+  Led led;
+  led.period_nsec = 100'000'000;
+  led.say(true, 1, 0.01, 0.0);
+  led.live(1);
+  led.live(4);
+  EXPECT_TRUE(led.feel().holds) << "400 ms since the last word";
+  led.live(1);
+  EXPECT_FALSE(led.feel().holds);
 }
 
 TEST(Pointer, ARingThatIsNotHeldStaysAndAKeyIsFree) {

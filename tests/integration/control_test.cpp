@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,6 +18,8 @@
 
 #include "idl/gesture.h"
 #include "idl/scene.h"
+#include "node/config/name_hash.h"
+#include "node/dds/participant.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
 #include "node/runtime_folder.h"
@@ -376,6 +379,52 @@ TEST_F(ControlInRealtime, SlowMotionIsFollowedByTheKeyAndSilencesNobody) {
   expect_done({"rate", "0.5"}, "plays 0.5 times");
   expect_done({"load", "stiff.yaml"}, "'wall' begins");
   runs_at(1000.0);
+}
+
+/// A process that describes the keyboard as one that moves something real, as long as this lives.
+class RealKeyboard {
+ public:
+  explicit RealKeyboard(dds::ParticipantConfig config)
+      : participant_((config.node = "real", std::move(config))),
+        writer_(participant_, dds::Topic::kDevice) {
+    msg::DeviceDescription description;
+    description.device_id(config::name_hash("keyboard"));
+    description.device("keyboard");
+    description.driver("kfb1");
+    description.epoch(1);
+    description.coordinate_count(1);
+    description.rate_hz(1000.0);
+    description.moving_mass_kg(0.05);
+    description.force_n()[0] = 20.0;
+    EXPECT_TRUE(writer_.write(description));
+  }
+
+ private:
+  dds::Participant participant_;
+  dds::Writer<msg::DeviceDescription> writer_;
+};
+
+/// Statuses come 0.5 s apart; one that says at once that the pace is another comes earlier.
+TEST_F(ControlInRealtime, ARealDeviceEndsSlowMotionAndTheStatusSaysSoAtOnce) {
+  start();
+  bool is_at_once = false;
+  for (int times = 0; !is_at_once && times < 5; ++times) {
+    ASSERT_TRUE(eventually([&] { return ctl({"rate", "0.5"}).code == 0; })) << "the last one left";
+    ASSERT_TRUE(status_.wait_for("sim", [](const msg::NodeStatus& now) {
+      return now.target_rate_hz() == 500.0 &&
+             now.text().ends_with("plays 0.5 times as fast as in real time");
+    }));
+    std::vector<std::int64_t> sent_nsec;
+    const RealKeyboard real(session_.participant().config());
+    ASSERT_TRUE(status_.wait_for("sim", [&](const msg::NodeStatus& now) {
+      sent_nsec.push_back(now.time_nsec());
+      return now.target_rate_hz() == 1000.0 && now.text().find("plays 0.5") == std::string::npos;
+    }));
+    std::erase(sent_nsec, sent_nsec.back());
+    ASSERT_FALSE(sent_nsec.empty());
+    is_at_once = status_.of("sim").time_nsec() - sent_nsec.back() < 500'000'000;
+  }
+  EXPECT_TRUE(is_at_once);
 }
 
 TEST_P(Control, SlowMotionIsOfRealtimeSessionsAlone) {

@@ -29,5 +29,16 @@ TEST(TickRate, OfARunTooShortForTwoLooksIsThatSinceTheLastLookWithoutTicks) {
   EXPECT_EQ(rate.reached_hz(), 500.0);
 }
 
+TEST(TickRate, TheMeanBeginsAgainWhenTheLoopAimsAtAnotherRate) {
+  TickRate rate(0);
+  rate.update(500 * kMsec, 500);
+  rate.update(9'500 * kMsec, 9'500);
+  rate.restart(9'500 * kMsec, 9'500);
+  EXPECT_EQ(rate.mean_hz(), 1'000.0) << "until ticks of the other rate are counted";
+  rate.update(10'500 * kMsec, 9'600);
+  EXPECT_EQ(rate.mean_hz(), 100.0);
+  EXPECT_EQ(rate.reached_hz(), 100.0);
+}
+
 }  // namespace
 }  // namespace cordis::node
