@@ -101,6 +101,8 @@ const char* word_of(msg::SurfaceKind kind) {
       return "box";
     case msg::SURFACE_CYLINDER:
       return "cylinder";
+    case msg::SURFACE_SEGMENT:
+      return "segment";
     case msg::SURFACE_PLANE:
       break;
   }

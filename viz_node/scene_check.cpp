@@ -45,6 +45,9 @@ bool has_shape(const msg::SurfaceDescription& surface) {
     case msg::SURFACE_CYLINDER:
       return is_unit_vector(surface.axis()) && are_sizes(surface.size_m(), 2) &&
              surface.size_m()[0] > 0.0;
+    case msg::SURFACE_SEGMENT:
+      return is_unit_vector(surface.axis()) && are_sizes(surface.size_m(), 1) &&
+             surface.size_m()[0] > 0.0;
   }
   return false;
 }

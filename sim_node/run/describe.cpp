@@ -23,6 +23,7 @@ static_assert(static_cast<int>(scene::SignalRate::kStep) == msg::RATE_STEP);
 static_assert(static_cast<int>(engine::SurfaceKind::kPlane) == msg::SURFACE_PLANE);
 static_assert(static_cast<int>(engine::SurfaceKind::kBox) == msg::SURFACE_BOX);
 static_assert(static_cast<int>(engine::SurfaceKind::kCylinder) == msg::SURFACE_CYLINDER);
+static_assert(static_cast<int>(engine::SurfaceKind::kSegment) == msg::SURFACE_SEGMENT);
 static_assert(config::kMaxAxes == msg::MAX_AXES);
 static_assert(msg::MAT_PORT <= std::numeric_limits<std::uint8_t>::max());
 
@@ -107,6 +108,8 @@ msg::SurfaceDescription surface_of(const scene::Scene& scene, const engine::Surf
   message.axis(axis);
   if (surface.kind == engine::SurfaceKind::kCylinder)
     message.size_m({surface.half_size[0], whole_of(surface.half_size[1])});
+  if (surface.kind == engine::SurfaceKind::kSegment)
+    message.size_m({whole_of(surface.half_size[0])});
   return message;
 }
 

@@ -1,9 +1,10 @@
-// tests/engine/surface_test.cpp -- balls on planes, boxes and cylinders.
+// tests/engine/surface_test.cpp -- balls on planes, boxes, cylinders and segments.
 #include "sim_node/engine/description/surface.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct Chance {
     return place;
   }
   Surface shape(int dimension) {
-    const auto kind = dimension == 1 ? random() % 2 : random() % 3;
+    const auto kind = random() % (dimension == 1 ? 2 : dimension == 2 ? 4 : 3);
+    if (kind == 3) return segment(place(1.0, 2).normalized(), (*this)(0.05, 0.4));
     if (kind == 0) return plane(place(1.0, dimension).normalized(), random() % 2 == 0);
     if (kind == 1) {
       Vec3 half = Vec3::Constant(kNoEnd);
@@ -97,6 +99,24 @@ TEST(Surface, OfABoxIsRoundAtEdgesAndCorners) {
   const SurfaceDistance corner = distance_from(cube, Vec3::Zero(), Vec3(-1.2, 1.3, -1.6));
   EXPECT_NEAR(corner.distance, 0.7, 1e-15);
   EXPECT_LT((corner.normal - Vec3(-2.0, 3.0, -6.0) / 7.0).norm(), 1e-15);
+}
+
+TEST(Surface, OfASegmentEndsWhereTheOneBeforeItActs) {
+  for (const bool follows : {false, true}) {
+    const Surface line = segment(Vec3(0.6, 0.8, 0.0), 0.5, follows);
+    const Vec3 centre(1.0, 2.0, 0.0);
+    const auto at = [&](double along, double aside) {
+      return distance_from(line, centre, centre + along * line.axis + aside * Vec3(-0.8, 0.6, 0.0));
+    };
+    EXPECT_NEAR(at(0.2, -0.3).distance, 0.3, 1e-15);
+    EXPECT_LT((at(0.2, -0.3).normal - Vec3(0.8, -0.6, 0.0)).norm(), 1e-15);
+    EXPECT_FALSE(at(0.2, -0.3).is_beyond);
+    EXPECT_NEAR(at(0.8, 0.4).distance, 0.5, 1e-15);
+    EXPECT_FALSE(at(0.8, 0.4).is_beyond) << "its end is its own";
+    EXPECT_NEAR(at(-0.8, 0.4).distance, 0.5, 1e-15);
+    EXPECT_EQ(at(-0.8, 0.4).is_beyond, follows);
+    EXPECT_EQ(at(0.0, 0.0).normal, Vec3(Vec3::Zero()));
+  }
 }
 
 /// A ball of 0.2 kg above the floor y = 0.
@@ -405,6 +425,95 @@ TEST(Surface, ThatIsOutOfRangeIsRefused) {
     scene.radius.push_back(0.0);
     scene.sets[0].set_p.push_back(2);
   });
+}
+
+/// A ball of 0.2 kg and 0.05 m, under its weight, on polylines of 1000 N/m.
+NetworkDescription ball_on_polyline(const Vec3& place, const std::vector<Vec3>& corners) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.gravity = Vec3(0.0, -9.81, 0.0);
+  scene.mats = {mass(0.2, place)};
+  scene.radius = {kBallRadius};
+  touch(scene, 1, of_one_state(contact(1000.0, 0.0)), kBallRadius, -1.0,
+        add_polyline(scene, corners));
+  return scene;
+}
+
+constexpr double kPressed = 0.2 * 9.81 / 1000.0;  // by the weight [m]
+
+TEST(Polyline, CarriesABallOverItsCornersAsOneLineDoes) {
+  // It starts exactly above a corner, and comes to two others.
+  const Vec3 start(-0.5, kBallRadius - kPressed, 0.0);
+  NetworkDescription scene = ball_on_polyline(
+      start, {Vec3(-1, 0, 0), Vec3(-0.5, 0, 0), Vec3(0, 0, 0), Vec3(0.3, 0, 0), Vec3(2, 0, 0)});
+  scene.mats[0].velocity = Vec3(1.0, 0.0, 0.0);
+  World world = make_world(scene);
+  for (int n = 0; n < 12'000; ++n) {
+    world.step();
+    ASSERT_NEAR(world.position(0).y(), start.y(), 1e-12) << "at " << world.position(0).x() << " m";
+  }
+  EXPECT_NEAR(world.position(0).x(), 0.7, 1e-9);
+}
+
+TEST(Polyline, PushesOnceAtARidgeAndWithBothSidesInAValley) {
+  const std::vector<Vec3> roof = {Vec3(-1, -1, 0), Vec3(0, 0, 0), Vec3(1, -1, 0)};
+  World ridge = make_world(ball_on_polyline(Vec3(0.0, kBallRadius - kPressed, 0.0), roof));
+  for (int n = 0; n < 1000; ++n) ridge.step();
+  EXPECT_NEAR(ridge.link_force(0).y(), 0.2 * 9.81, 1e-9);
+  EXPECT_NEAR(ridge.position(0).y(), kBallRadius - kPressed, 1e-12);
+
+  // Each side pushes with the weight over 2 cos(45 degrees).
+  const double apart = kBallRadius - kPressed / std::numbers::sqrt2;
+  const std::vector<Vec3> gutter = {Vec3(-1, 1, 0), Vec3(0, 0, 0), Vec3(1, 1, 0)};
+  const double height = std::numbers::sqrt2 * apart;
+  World valley = make_world(ball_on_polyline(Vec3(0.0, height, 0.0), gutter));
+  for (int n = 0; n < 10'000; ++n) valley.step();
+  EXPECT_NEAR(valley.position(0).y(), height, 1e-12);
+  EXPECT_NEAR(valley.position(0).x(), 0.0, 1e-12);
+}
+
+TEST(Polyline, ThatIsClosedKeepsABallInsideAndItsEnergy) {
+  const std::vector<Vec3> room = {Vec3(0, 0, 0),     Vec3(0.7, -0.1, 0), Vec3(0.8, 0.5, 0),
+                                  Vec3(0.3, 0.7, 0), Vec3(-0.1, 0.4, 0), Vec3(0, 0, 0)};
+  NetworkDescription scene = ball_on_polyline(Vec3(0.3, 0.3, 0.0), room);
+  scene.gravity = Vec3::Zero();
+  scene.mats[0].velocity = Vec3(0.9, 0.37, 0.0);
+  World world = make_world(scene);
+  const double start = world.energy().kinetic;
+  for (int n = 0; n < 200'000; ++n) {
+    world.step();
+    ASSERT_LT((world.position(0) - Vec3(0.35, 0.3, 0.0)).norm(), 0.6) << n;
+    if (n % 1000 != 0) continue;
+    const engine::Energy energy = world.energy();
+    ASSERT_NEAR(energy.kinetic + energy.elastic - energy.elastic_error, start, 0.02 * start) << n;
+  }
+}
+
+TEST(Polyline, HasTheSameBitsOnEveryVectorWidthAndAfterRestore) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.gravity = Vec3(0.0, -9.81, 0.0);
+  for (int i = 0; i < 37; ++i) {
+    scene.mats.push_back(mass(0.1 + 0.01 * i, Vec3(0.05 * i - 0.9, 0.3 + 0.01 * (i % 5), 0.0)));
+    scene.radius.push_back(0.02);
+  }
+  std::vector<Vec3> hills;
+  for (int i = 0; i <= 40; ++i) hills.push_back(Vec3(0.05 * i - 1.0, 0.1 * std::sin(0.9 * i), 0.0));
+  touch(scene, 37, of_one_state(contact(2000.0, 0.0)), 0.02, -1.0, add_polyline(scene, hills));
+  std::optional<std::uint64_t> hash;
+  for (const engine::VectorWidth width : engine::supported_vector_widths()) {
+    World world = make_world(scene, width);
+    for (int n = 0; n < 4000; ++n) world.step();
+    const engine::Snapshot snapshot = world.snapshot();
+    for (int n = 0; n < 1000; ++n) world.step();
+    if (!hash) hash = world.state_hash();
+    EXPECT_EQ(world.state_hash(), *hash) << to_string(width);
+    world.restore(snapshot);
+    for (int n = 0; n < 1000; ++n) world.step();
+    EXPECT_EQ(world.state_hash(), *hash) << to_string(width) << ", restored";
+  }
 }
 
 }  // namespace

@@ -35,6 +35,26 @@ inline Surface cylinder(const Vec3& axis, double radius, double half_length = kN
   return {SurfaceKind::kCylinder, 0, axis, Vec3(radius, half_length, 0.0)};
 }
 
+inline Surface segment(const Vec3& axis, double half_length, bool follows = false) {
+  Surface surface{SurfaceKind::kSegment, 0, axis, Vec3(half_length, 0.0, 0.0)};
+  surface.follows = follows;
+  return surface;
+}
+
+/// Adds the segments between these corners, each of which follows the one before. @return their numbers
+inline std::vector<std::uint32_t> add_polyline(NetworkDescription& scene,
+                                               const std::vector<Vec3>& corners) {
+  const bool is_closed = corners.front() == corners.back();
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Vec3 side = corners[i + 1] - corners[i];
+    numbers.push_back(add_surface(scene,
+                                  segment(side.normalized(), 0.5 * side.norm(), is_closed || i > 0),
+                                  corners[i] + 0.5 * side));
+  }
+  return numbers;
+}
+
 /// Adds a set liaison of these surfaces with the MATs [0, balls).
 inline void touch(NetworkDescription& scene, std::uint32_t balls, StateMachine state_machine,
                   double range, double rest_length, const std::vector<std::uint32_t>& surfaces) {

@@ -103,6 +103,63 @@ TEST(SurfaceBound, CountsPostsByTheGapBetweenThem) {
   EXPECT_EQ(crossing.most(), 2.0);
 }
 
+TEST(SurfaceBound, CountsTheSidesOfAPolylineThatABallMayTouchAtOnce) {
+  const auto line_of = [](const std::vector<Vec3>& corners) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    Shapes shapes;
+    for (const std::uint32_t mat : add_polyline(scene, corners))
+      shapes.add(scene.surfaces[mat], scene.mats[mat].position);
+    return shapes;
+  };
+  const Shapes zigzag =
+      line_of({Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(2, 0, 0), Vec3(3, 1, 0), Vec3(4, 0, 0)});
+  EXPECT_EQ(zigzag.most(kReach, 2), 2.0);
+  EXPECT_EQ(line_of({Vec3(0, 0, 0), Vec3(1, 0, 0)}).most(kReach, 2), 1.0);
+  const auto beside_a_wall = [&](double gap) {
+    return line_of({Vec3(0, 0, 0), Vec3(1, 0, 0)})
+        .add(plane(-Vec3::UnitX()), Vec3(1.0 + gap, 0.0, 0.0))
+        .most(kReach, 2);
+  };
+  EXPECT_EQ(beside_a_wall(1.99 * kReach), 2.0);
+  EXPECT_EQ(beside_a_wall(2.01 * kReach), 1.0);
+}
+
+TEST(SurfaceBound, IsNeverBelowTheTrueNumberOfSegmentsAtAnyPlace) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    std::mt19937 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+    };
+    const auto place = [&](double reach) {
+      const double x = uniform(-reach, reach);
+      return Vec3(x, uniform(-reach, reach), 0.0);
+    };
+    Shapes shapes;
+    for (int s = 0; s < 8; ++s) {
+      const Vec3 direction = place(1.0).normalized();
+      if (s < 6) {
+        shapes.add(segment(direction, uniform(0.05, 0.5)), place(1.0));
+      } else {
+        shapes.add(plane(direction, true), place(1.0));
+      }
+    }
+    const double reach = uniform(0.05, 0.3);
+    const double bound = shapes.most(reach, 2);
+    double most = 0.0;
+    for (int n = 0; n < 3000; ++n) {
+      const Vec3 here = place(1.2);
+      double count = 0.0;
+      for (std::size_t s = 0; s < shapes.surfaces.size(); ++s) {
+        if (engine::distance_from(shapes.surfaces[s], shapes.centres[s], here).distance < reach)
+          count += 1.0;
+      }
+      most = std::max(most, count);
+    }
+    EXPECT_LE(most, bound) << seed;
+  }
+}
+
 TEST(SurfaceBound, IsNeverBelowTheTrueNumberAtAnyPlace) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     std::mt19937 random(seed);

@@ -1,4 +1,4 @@
-// tests/scene/surface_test.cpp -- planes, boxes and cylinders as a scene writes them.
+// tests/scene/surface_test.cpp -- planes, boxes, cylinders and polylines as a scene writes them.
 #include <cmath>
 #include <limits>
 
@@ -74,6 +74,30 @@ TEST(SurfaceMatter, ExistsInEveryDimension) {
   EXPECT_EQ(flat.network.surfaces[0].half_size, Vec3(2.0, 0.5, kNoEnd));
   EXPECT_EQ(flat.network.surfaces[1].axis, Vec3(0.0, 0.0, 1.0));
   EXPECT_NO_THROW(engine::Network{flat.network});
+}
+
+TEST(SurfaceMatter, OfAPolylineIsASegmentBetweenTwoCorners) {
+  for (const bool closed : {false, true}) {
+    const Scene scene = sound_scene(2, std::string("matter:\n") + R"(
+  balls: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [0, 2]}
+  floor: {kind: polyline, corners_m: [[0, 0], [3, 4], [3, 6]])" +
+                                           (closed ? ", closed: true}\n" : "}\n") + kTouch);
+    const auto& surfaces = scene.network.surfaces;
+    ASSERT_EQ(surfaces.size(), closed ? 3U : 2U);
+    EXPECT_EQ(scene.matter[1].first, 1u);
+    EXPECT_EQ(scene.matter[1].count, surfaces.size());
+    EXPECT_EQ(surfaces[0].kind, SurfaceKind::kSegment);
+    EXPECT_EQ(surfaces[0].mat, 1u);
+    EXPECT_EQ(surfaces[1].mat, 2u);
+    EXPECT_EQ(scene.network.mats[1].position, Vec3(1.5, 2.0, 0.0));
+    EXPECT_EQ(scene.network.mats[2].position, Vec3(3.0, 5.0, 0.0));
+    EXPECT_LT((surfaces[0].axis - Vec3(0.6, 0.8, 0.0)).norm(), 1e-15);
+    EXPECT_EQ(surfaces[0].half_size[0], 2.5);
+    EXPECT_EQ(surfaces[0].follows, closed);
+    EXPECT_TRUE(surfaces[1].follows);
+    EXPECT_EQ(scene.network.sets[0].set_p.size(), surfaces.size());
+    EXPECT_NO_THROW(engine::Network{scene.network});
+  }
 }
 
 TEST(SurfaceMatter, IsPutWhereItsPartIs) {

@@ -154,6 +154,7 @@ matter:
   chest: {kind: box, center_m: [0, -5], size_m: [0.1, 0.1]}
   crate: {kind: box, from_m: [1, -5], to_m: [2, -6]}
   pole: {kind: cylinder, center_m: [3, -5], radius_m: 0.1}
+  hills: {kind: polyline, corners_m: [[0, -7], [1, -6.5], [2, -7]], closed: true}
   row: {part: wheel, translate_m: [20, 0], rotate_deg: 10, color: teal, repeat: {count: 2, translate_m: [1, 0], rotate_deg: 5}}
 liaisons:
   touch: {stiffness_n_per_m: 100, range_m: 0.1, pulls: false}

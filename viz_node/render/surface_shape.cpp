@@ -318,6 +318,21 @@ SurfaceShape cylinder_section(const Surface& cylinder, const Box& home, double l
                     level);
 }
 
+/// Its two ends.
+std::array<Point, 2> ends_of(const Surface& segment) noexcept {
+  const Point centre = point_of(segment.centre_m());
+  const Point half = 0.5 * segment.size_m()[0] * point_of(segment.axis());
+  return {centre - half, centre + half};
+}
+
+SurfaceShape segment_of(const Surface& segment, double level) {
+  auto [from, to] = ends_of(segment);
+  from[2] = to[2] = level;
+  SurfaceShape shape;
+  shape.edges.push_back({from, to});
+  return shape;
+}
+
 /// The box around a cylinder; of an infinite one, around a disc of it at `near`.
 Box box_around(const Surface& cylinder, const Point& near) noexcept {
   const Point axis = point_of(cylinder.axis());
@@ -362,6 +377,9 @@ std::vector<SurfaceShape> shapes_of(const std::vector<Surface>& surfaces, const 
         shapes.push_back(is_flat ? cylinder_section(surface, home, level)
                                  : cylinder_of(surface, home));
         break;
+      case msg::SURFACE_SEGMENT:
+        shapes.push_back(segment_of(surface, level));
+        break;
     }
   }
   return shapes;
@@ -385,6 +403,10 @@ Box bounds_with(const std::vector<Surface>& surfaces, const Box& matter, std::ui
         there.high[k] = span.high;
       }
       box = box.united(there);
+      continue;
+    }
+    if (surface.kind() == msg::SURFACE_SEGMENT) {
+      for (const Point& end : ends_of(surface)) box = box.united({end, end});
       continue;
     }
     const Point axis = point_of(surface.axis());

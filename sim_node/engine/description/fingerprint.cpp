@@ -116,7 +116,8 @@ class Fingerprint {
     add(surface.mat);
     add(surface.axis);
     add(surface.half_size);
-    add(static_cast<std::uint64_t>(surface.both_sides));
+    add(static_cast<std::uint64_t>(surface.both_sides) +
+        2 * static_cast<std::uint64_t>(surface.follows));
   }
   void add(const TimeFunction& function) {
     for (const Program& formula : function.formula) add_all(formula.code);

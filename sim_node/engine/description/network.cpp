@@ -139,6 +139,12 @@ void check_surface(const NetworkDescription& description, const Surface& surface
     return;
   }
   require(std::abs(surface.axis.squaredNorm() - 1.0) < kRounding, name + ": axis", "a unit vector");
+  if (surface.kind == SurfaceKind::kSegment) {
+    require(description.dimension == 2, name, "a segment in 2 dimensions alone");
+    require_vector(surface.axis, description.dimension, name + ": axis");
+    require(size[0] > 0.0 && size[0] < kNoEnd, name + ": half length", "finite and > 0");
+    return;
+  }
   if (surface.kind == SurfaceKind::kPlane) {
     require_vector(surface.axis, description.dimension, name + ": normal");
     return;

@@ -1,6 +1,7 @@
 // sim_node/engine/description/surface.cpp
 #include "sim_node/engine/description/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -68,14 +69,32 @@ SurfaceDistance from_cylinder(const Surface& cylinder, const Vec3& from_centre) 
   return {distance, (from_side / distance) * outwards + (from_end / distance) * to_end};
 }
 
+SurfaceDistance from_segment(const Surface& segment, const Vec3& from_centre) noexcept {
+  const double half = segment.half_size[0];
+  const double along = dot(segment.axis, from_centre);
+  const Vec3 apart = from_centre - std::clamp(along, -half, half) * segment.axis;
+  const double distance = std::sqrt(dot(apart, apart));
+  const bool is_beyond = segment.follows && !(along > -half);
+  if (!(distance > 0.0)) return {0.0, Vec3::Zero(), is_beyond};
+  return {distance, apart / distance, is_beyond};
+}
+
 }  // namespace
 
 SurfaceDistance distance_from(const Surface& surface, const Vec3& centre,
                               const Vec3& place) noexcept {
   const Vec3 from_centre = place - centre;
-  if (surface.kind == SurfaceKind::kPlane) return from_plane(surface, from_centre);
-  return surface.kind == SurfaceKind::kBox ? from_box(surface, from_centre)
-                                           : from_cylinder(surface, from_centre);
+  switch (surface.kind) {
+    case SurfaceKind::kPlane:
+      return from_plane(surface, from_centre);
+    case SurfaceKind::kBox:
+      return from_box(surface, from_centre);
+    case SurfaceKind::kCylinder:
+      return from_cylinder(surface, from_centre);
+    case SurfaceKind::kSegment:
+      return from_segment(surface, from_centre);
+  }
+  return {};
 }
 
 const Surface* surface_of(const NetworkDescription& network, std::uint32_t mat) noexcept {

@@ -15,27 +15,34 @@ struct SetLiaison;
 inline constexpr std::size_t kMaxSurfacePairs = std::size_t{1} << 24;
 
 /// The shape of a surface. In 2 dimensions a box is a rectangle, a cylinder the circle across its axis; in
-/// 1 dimension a plane is a point, a box an interval.
-enum class SurfaceKind : std::uint8_t { kPlane = 0, kBox = 1, kCylinder = 2 };
+/// 1 dimension a plane is a point, a box an interval. A segment is a straight line without a width, in 2
+/// dimensions alone.
+enum class SurfaceKind : std::uint8_t { kPlane = 0, kBox = 1, kCylinder = 2, kSegment = 3 };
 
 /// The shape of a fixed MAT. A set liaison acts between a first set of surfaces and a second one of balls,
 /// along the normal: the distance of a pair is that of the ball's centre from the nearest point of the
 /// surface, below 0 inside.
 struct Surface {
   SurfaceKind kind = SurfaceKind::kPlane;
-  std::uint32_t mat = 0;      ///< whose position is a point of the plane, or the centre
-  Vec3 axis = Vec3::UnitY();  ///< unit vector: outer normal of a plane, axis of a cylinder
+  std::uint32_t mat = 0;  ///< whose position is a point of the plane, or the centre
+  Vec3 axis =
+      Vec3::UnitY();  ///< unit vector: outer normal of a plane, axis of a cylinder, from the
+                      ///< start of a segment to its end
   Vec3 half_size =
       Vec3::Zero();  ///< [m], > 0, infinite without an end: half edges of a box along x, y, z;
-                     ///< radius, half length of a cylinder
+                     ///< radius, half length of a cylinder; half length of a segment
   bool both_sides = false;  ///< a plane whose distance has no sign, and whose normal points to the
-                            ///< MAT
+                            ///< MAT; of a segment that is so without it
+  bool follows =
+      false;  ///< a segment whose start is the end of another one, which acts on what is beyond it
 };
 
 /// Where a place is beside a surface.
 struct SurfaceDistance {
   double distance = 0.0;       ///< [m], below 0 inside
-  Vec3 normal = Vec3::Zero();  ///< unit vector away from the surface; 0 on a plane with both sides
+  Vec3 normal = Vec3::Zero();  ///< unit vector away from the surface; 0 on one with both sides
+  bool is_beyond =
+      false;  ///< beyond the start of a segment that follows another one: it does not act
 };
 
 /// The distance of a place from the surface whose point or centre is at `centre`. Beside an edge or a corner the normal points

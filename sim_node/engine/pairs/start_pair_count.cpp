@@ -20,8 +20,8 @@ StartPairCount count_at_surfaces(const NetworkDescription& network, const SetLia
     const Surface& surface = *surface_of(network, of_surface);
     for (const std::uint32_t mat : set.set_q) {
       const Vec3& place = network.mats[mat].position;
-      if (distance_from(surface, network.mats[of_surface].position, place).distance < set.range)
-        ++count.in_range;
+      const SurfaceDistance from = distance_from(surface, network.mats[of_surface].position, place);
+      if (from.distance < set.range && !from.is_beyond) ++count.in_range;
     }
     count.looked_at += set.set_q.size();
     if (count.in_range > limits.in_range || count.looked_at > limits.looked_at) break;

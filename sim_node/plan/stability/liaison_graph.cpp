@@ -149,6 +149,8 @@ double flips_at(const engine::Surface& surface, int dimension) {
     }
     case engine::SurfaceKind::kCylinder:
       return std::isinf(half[1]) ? -half[0] : 0.0;
+    case engine::SurfaceKind::kSegment:
+      return 0.0;
   }
   return 0.0;
 }

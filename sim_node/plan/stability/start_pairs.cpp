@@ -39,12 +39,12 @@ void StartPairs::measure_surfaces(const engine::NetworkDescription& network,
     const engine::Surface& surface = *engine::surface_of(network, set.set_p[s]);
     const engine::Vec3& centre = network.mats[surface.mat].position;
     for (std::size_t m = 0; m < set.set_q.size(); ++m) {
-      const double distance =
-          engine::distance_from(surface, centre, network.mats[set.set_q[m]].position).distance;
-      if (!(distance < set.range)) continue;
+      const engine::SurfaceDistance from =
+          engine::distance_from(surface, centre, network.mats[set.set_q[m]].position);
+      if (!(from.distance < set.range) || from.is_beyond) continue;
       const auto first = static_cast<std::uint32_t>(s);
       const auto second = static_cast<std::uint32_t>(count_p + m);
-      pairs_.push_back({first, second, distance});
+      pairs_.push_back({first, second, from.distance});
       ++counts_[first];
       ++counts_[second];
     }

@@ -35,6 +35,7 @@ class CountedDirections {
     keeps_ -= unit * unit.transpose();
   }
   void take_out_endless(const Surface& surface) {
+    if (surface.kind == SurfaceKind::kSegment) return;
     if (surface.kind == SurfaceKind::kCylinder) {
       if (surface.half_size[1] == kNoEnd) take_out(surface.axis);
       return;
@@ -49,7 +50,7 @@ class CountedDirections {
   Eigen::Matrix3d keeps_ = Eigen::Matrix3d::Identity();
 };
 
-/// The farthest point of a box or cylinder along a direction across all in which it has no end.
+/// The farthest point of a box, cylinder or segment along a direction across all in which it has no end.
 Vec3 farthest(const Body& body, const Vec3& direction) {
   const Vec3& size = body.surface.half_size;
   Vec3 point = body.centre;
@@ -61,6 +62,8 @@ Vec3 farthest(const Body& body, const Vec3& direction) {
   }
   const Vec3& axis = body.surface.axis;
   const double along = axis.dot(direction);
+  if (body.surface.kind == SurfaceKind::kSegment)
+    return point + (along < 0.0 ? -size[0] : size[0]) * axis;
   if (size[1] < kNoEnd) point += (along < 0.0 ? -size[1] : size[1]) * axis;
   const Vec3 radial = direction - along * axis;
   const double length = radial.norm();
@@ -103,6 +106,8 @@ Heights heights_over(const Body& plane, const Body& body) {
   };
   if (body.surface.kind == SurfaceKind::kBox) {
     for (int axis = 0; axis < 3; ++axis) add(size[axis], std::abs(normal[axis]));
+  } else if (body.surface.kind == SurfaceKind::kSegment) {
+    add(size[0], std::abs(normal.dot(body.surface.axis)));
   } else {
     const double along = std::abs(normal.dot(body.surface.axis));
     add(size[1], along);

@@ -33,7 +33,7 @@ struct MatterKind {
   int highest_space;
   bool may_be_fixed = true;  ///< takes `fixed: true`
 };
-constexpr std::array<MatterKind, 15> kMatterKinds{{
+constexpr std::array<MatterKind, 16> kMatterKinds{{
     {"mass", read_mass, 1, 3},
     {"fixed", read_fixed, 1, 3, false},
     {"points", read_points, 1, 3, false},
@@ -49,6 +49,7 @@ constexpr std::array<MatterKind, 15> kMatterKinds{{
     {"plane", read_plane_surface, 1, 3, false},
     {"box", read_box, 1, 3, false},
     {"cylinder", read_cylinder, 2, 3, false},
+    {"polyline", read_polyline, 2, 2, false},
 }};
 
 const MatterKind* kind_named(const std::string& word) {
@@ -60,7 +61,8 @@ const MatterKind* kind_named(const std::string& word) {
 
 /// True if `driven` is no key to be offered.
 bool is_surface(const MatterKind& kind) {
-  return kind.read == read_plane_surface || kind.read == read_box || kind.read == read_cylinder;
+  return kind.read == read_plane_surface || kind.read == read_box || kind.read == read_cylinder ||
+         kind.read == read_polyline;
 }
 
 /// True if the keys of a start are to be read: what is fixed refuses them without offering them.

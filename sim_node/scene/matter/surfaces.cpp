@@ -113,6 +113,39 @@ GeneratedMatter read_cylinder(Source& source) {
   return matter_of(source, cylinder, centre);
 }
 
+GeneratedMatter read_polyline(Source& source) {
+  config::MappingReader& reader = source.reader;
+  std::vector<Vec3> corners = required_points(reader, "corners_m", source.space, source.problems);
+  const bool is_closed = reader.optional_truth("closed", false);
+  const std::size_t least = is_closed ? 3 : 2;
+  if (reader.ok() && corners.size() < least) {
+    reader.error_at("corners_m", "'corners_m' in " + reader.what() + " must be at least " +
+                                     std::to_string(least) + " points, got " +
+                                     std::to_string(corners.size()));
+  }
+  if (!reader.ok()) return {};
+  if (is_closed) corners.push_back(corners.front());
+  GeneratedMatter matter;
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Vec3 side = corners[i + 1] - corners[i];
+    Surface segment;
+    segment.kind = SurfaceKind::kSegment;
+    segment.mat = static_cast<std::uint32_t>(i);
+    segment.half_size = Vec3(0.5 * side.norm(), 0.0, 0.0);
+    segment.follows = is_closed || i > 0;
+    if (!(segment.half_size[0] > 0.0)) {
+      reader.error_at("corners_m", "two corners of " + reader.what() +
+                                       " that follow each other are the same point");
+      return {};
+    }
+    segment.axis = side.normalized();
+    matter.mats.push_back({engine::MatKind::kFixed, 0.0, corners[i] + 0.5 * side, Vec3::Zero()});
+    matter.radius_m.push_back(0.0);
+    matter.surfaces.push_back(segment);
+  }
+  return matter;
+}
+
 bool turn_surface(const Placement& placement, int space, Surface& surface) {
   if (surface.kind != SurfaceKind::kBox) {
     const bool is_across = space == 2 && surface.kind == SurfaceKind::kCylinder;

@@ -6,10 +6,11 @@
 
 namespace cordis::scene {
 
-/// Each is one fixed MAT with a shape. Whatever is wrong is a problem; then the result is not to be used.
+/// Each is one fixed MAT with a shape, a polyline one for each of its segments. Whatever is wrong is a problem; then the result is not to be used.
 GeneratedMatter read_plane_surface(Source& source);
 GeneratedMatter read_box(Source& source);
 GeneratedMatter read_cylinder(Source& source);
+GeneratedMatter read_polyline(Source& source);
 
 /// Turns a surface about its own point. @return false for a box that would not lie along the axes
 [[nodiscard]] bool turn_surface(const Placement& placement, int space, engine::Surface& surface);

@@ -96,10 +96,10 @@ export interface ColouredRange {
 /** A fixed body of the scene that matter touches. */
 export interface Surface {
   name: string;
-  kind: 'plane' | 'box' | 'cylinder';
+  kind: 'plane' | 'box' | 'cylinder' | 'segment';
   centre: number[]; // x, y, z [m]; a point of a plane
-  axis: number[]; // unit vector: the normal of a plane on its outer side; empty for a box
-  size: number[]; // box: edges x, y, z [m], 0 where it has no end; cylinder: radius, length
+  axis: number[]; // unit vector: the normal of a plane on its outer side, the direction of a segment; empty for a box
+  size: number[]; // box: edges x, y, z [m], 0 where it has no end; cylinder: radius, length; segment: length
 }
 
 export interface Hello {

@@ -94,6 +94,10 @@ export function shapesOf(surfaces: Surface[], home: Box3, space: number): Surfac
       const borders = planes.filter((other) => other !== null && other !== plane && other.normal.dot(plane.normal) <= 1 - 1e-9) as HalfSpace[];
       return space < 3 ? lineOf(plane, borders, home, level) : planeOf(plane, borders, home);
     }
+    if (surface.kind === 'segment') {
+      const [from, to] = endsOf(surface);
+      return { faces: [], edges: [[from.setZ(level), to.setZ(level)]] };
+    }
     if (surface.kind === 'box') return space < 3 ? boxSection(surface, home, level) : boxOf(surface, home);
     return space < 3 ? cylinderSection(surface, home, level) : cylinderOf(surface, home);
   });
@@ -111,6 +115,8 @@ export function boundsWith(surfaces: Surface[], matter: Box3, space: number): Bo
     if (surface.kind === 'box') {
       const spans = [0, 1, 2].map((k) => spanOf(surface, matter, k, 0));
       box.union(new Box3(vectorOf(spans.map(({ low }) => low)), vectorOf(spans.map(({ high }) => high))));
+    } else if (surface.kind === 'segment') {
+      for (const end of endsOf(surface)) box.expandByPoint(end);
     } else if (surface.kind === 'plane') {
       const foot = middle.clone().addScaledVector(axis, -along);
       uniteNear(foot, new Box3(foot, foot.clone()));
@@ -123,6 +129,12 @@ export function boundsWith(surfaces: Surface[], matter: Box3, space: number): Bo
   }
   if (space < 3) [box.min.z, box.max.z] = [matter.min.z, matter.max.z];
   return box;
+}
+
+/** The two ends of a segment. */
+function endsOf({ centre, axis, size }: Surface): [Vector3, Vector3] {
+  const half = vectorOf(axis).multiplyScalar(0.5 * size[0]!);
+  return [vectorOf(centre).sub(half), vectorOf(centre).add(half)];
 }
 
 /** The box around a cylinder whose middle is `near`. */
