@@ -101,9 +101,11 @@ TEST(Surface, OfABoxIsRoundAtEdgesAndCorners) {
   EXPECT_LT((corner.normal - Vec3(-2.0, 3.0, -6.0) / 7.0).norm(), 1e-15);
 }
 
-TEST(Surface, OfASegmentEndsWhereTheOneBeforeItActs) {
-  for (const bool follows : {false, true}) {
-    const Surface line = segment(Vec3(0.6, 0.8, 0.0), 0.5, follows);
+TEST(Surface, OfASegmentEndsWhereItsNeighboursAct) {
+  for (const bool is_joined : {false, true}) {
+    Surface line = segment(Vec3(0.6, 0.8, 0.0), 0.5);
+    const Vec3 right(0.8, -0.6, 0.0);
+    if (is_joined) line.comes_from = line.leads_to = (line.axis + 0.5 * right).normalized();
     const Vec3 centre(1.0, 2.0, 0.0);
     const auto at = [&](double along, double aside) {
       return distance_from(line, centre, centre + along * line.axis + aside * Vec3(-0.8, 0.6, 0.0));
@@ -111,10 +113,14 @@ TEST(Surface, OfASegmentEndsWhereTheOneBeforeItActs) {
     EXPECT_NEAR(at(0.2, -0.3).distance, 0.3, 1e-15);
     EXPECT_LT((at(0.2, -0.3).normal - Vec3(0.8, -0.6, 0.0)).norm(), 1e-15);
     EXPECT_FALSE(at(0.2, -0.3).is_beyond);
+    // It comes from its left side: its start turns to the left, its end to the right.
     EXPECT_NEAR(at(0.8, 0.4).distance, 0.5, 1e-15);
-    EXPECT_FALSE(at(0.8, 0.4).is_beyond) << "its end is its own";
-    EXPECT_NEAR(at(-0.8, 0.4).distance, 0.5, 1e-15);
-    EXPECT_EQ(at(-0.8, 0.4).is_beyond, follows);
+    EXPECT_EQ(at(0.8, 0.4).is_beyond, is_joined) << "beside the next one, on the outer side";
+    EXPECT_FALSE(at(0.6, 0.4).is_beyond) << "at the corner it acts, and the next one does not";
+    EXPECT_FALSE(at(0.8, -0.2).is_beyond) << "on the inner side both act";
+    EXPECT_NEAR(at(-0.8, -0.4).distance, 0.5, 1e-15);
+    EXPECT_EQ(at(-0.8, -0.4).is_beyond, is_joined) << "the outer side of its start";
+    EXPECT_FALSE(at(-0.8, 0.4).is_beyond) << "the inner side of its start";
     EXPECT_EQ(at(0.0, 0.0).normal, Vec3(Vec3::Zero()));
   }
 }
@@ -471,6 +477,51 @@ TEST(Polyline, PushesOnceAtARidgeAndWithBothSidesInAValley) {
   for (int n = 0; n < 10'000; ++n) valley.step();
   EXPECT_NEAR(valley.position(0).y(), height, 1e-12);
   EXPECT_NEAR(valley.position(0).x(), 0.0, 1e-12);
+}
+
+TEST(Polyline, HasAForceThatNeverJumps) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    Chance chance(seed);
+    std::vector<Vec3> corners = {Vec3::Zero()};
+    double angle = 0.0;
+    for (int i = 0; i < 6; ++i) {
+      angle += chance(-1.5, 1.5);
+      corners.push_back(corners.back() +
+                        chance(0.3, 0.6) * Vec3(std::cos(angle), std::sin(angle), 0.0));
+    }
+    NetworkDescription scene;
+    scene.dimension = 2;
+    const std::vector<std::uint32_t> lines = add_polyline(scene, corners);
+    // No line is shorter.
+    const double range = chance(0.05, 0.3);
+    constexpr double kNear = 0.02;
+    constexpr int kSteps = 20'000;
+    for (int path = 0; path < 10; ++path) {
+      const Vec3 around = corners[path % corners.size()];
+      const Vec3 from = around + chance.place(0.4, 2);
+      const Vec3 stride = (around + chance.place(0.4, 2) - from) / kSteps;
+      Vec3 last = Vec3::Zero();
+      bool has_last = false;
+      for (int n = 0; n < kSteps; ++n) {
+        const Vec3 place = from + n * stride;
+        Vec3 force = Vec3::Zero();
+        bool is_near = false;
+        for (const std::uint32_t line : lines) {
+          const auto [distance, normal, is_beyond] =
+              distance_from(scene.surfaces[line], scene.mats[line].position, place);
+          is_near |= distance < kNear;
+          if (!is_beyond && distance < range) force += (range - distance) * normal;
+        }
+        const double most =
+            static_cast<double>(lines.size()) * (1.0 + range / kNear) * stride.norm();
+        if (has_last && !is_near) {
+          ASSERT_LT((force - last).norm(), most) << seed << ", " << place;
+        }
+        last = force;
+        has_last = !is_near;
+      }
+    }
+  }
 }
 
 TEST(Polyline, ThatIsClosedKeepsABallInsideAndItsEnergy) {

@@ -35,22 +35,25 @@ inline Surface cylinder(const Vec3& axis, double radius, double half_length = kN
   return {SurfaceKind::kCylinder, 0, axis, Vec3(radius, half_length, 0.0)};
 }
 
-inline Surface segment(const Vec3& axis, double half_length, bool follows = false) {
-  Surface surface{SurfaceKind::kSegment, 0, axis, Vec3(half_length, 0.0, 0.0)};
-  surface.follows = follows;
-  return surface;
+inline Surface segment(const Vec3& axis, double half_length) {
+  return {SurfaceKind::kSegment, 0, axis, Vec3(half_length, 0.0, 0.0)};
 }
 
-/// Adds the segments between these corners, each of which follows the one before. @return their numbers
+/// Adds the segments between these corners, of which no two turn by more than a right angle. @return their numbers
 inline std::vector<std::uint32_t> add_polyline(NetworkDescription& scene,
                                                const std::vector<Vec3>& corners) {
   const bool is_closed = corners.front() == corners.back();
   std::vector<std::uint32_t> numbers;
-  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+  const std::size_t count = corners.size() - 1;
+  const auto axis_of = [&](std::size_t i) {
+    return Vec3((corners[i + 1] - corners[i]).normalized());
+  };
+  for (std::size_t i = 0; i < count; ++i) {
     const Vec3 side = corners[i + 1] - corners[i];
-    numbers.push_back(add_surface(scene,
-                                  segment(side.normalized(), 0.5 * side.norm(), is_closed || i > 0),
-                                  corners[i] + 0.5 * side));
+    Surface line = segment(side.normalized(), 0.5 * side.norm());
+    if (is_closed || i > 0) line.comes_from = axis_of((i + count - 1) % count);
+    if (is_closed || i + 1 < count) line.leads_to = axis_of((i + 1) % count);
+    numbers.push_back(add_surface(scene, line, corners[i] + 0.5 * side));
   }
   return numbers;
 }

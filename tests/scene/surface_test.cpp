@@ -93,8 +93,11 @@ TEST(SurfaceMatter, OfAPolylineIsASegmentBetweenTwoCorners) {
     EXPECT_EQ(scene.network.mats[2].position, Vec3(3.0, 5.0, 0.0));
     EXPECT_LT((surfaces[0].axis - Vec3(0.6, 0.8, 0.0)).norm(), 1e-15);
     EXPECT_EQ(surfaces[0].half_size[0], 2.5);
-    EXPECT_EQ(surfaces[0].follows, closed);
-    EXPECT_TRUE(surfaces[1].follows);
+    EXPECT_EQ(surfaces[0].leads_to, surfaces[1].axis);
+    EXPECT_EQ(surfaces[1].comes_from, surfaces[0].axis);
+    // The line that closes it turns by more than a right angle at both of its ends.
+    EXPECT_EQ(surfaces[0].comes_from, Vec3(Vec3::Zero()));
+    EXPECT_EQ(surfaces.back().leads_to, Vec3(Vec3::Zero()));
     EXPECT_EQ(scene.network.sets[0].set_p.size(), surfaces.size());
     EXPECT_NO_THROW(engine::Network{scene.network});
   }
@@ -125,6 +128,30 @@ links:
   EXPECT_NO_THROW(engine::Network{scene.network});
 }
 
+TEST(SurfaceMatter, OfAPolylineTurnsWithItsPart) {
+  const Scene scene = sound_scene(2, R"(parts:
+  yard:
+    matter:
+      fence: {kind: polyline, corners_m: [[0, 0], [4, 0], [8, 3]]}
+liaisons:
+  land: {kind: state_machine, stiffness_n_per_m: 600, pulls: false, range: rest}
+matter:
+  balls: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [0, 20]}
+  mine: {part: yard, rotate_deg: 90, translate_m: [1, 0]}
+links:
+  - {liaison: land, between_sets: [balls, ["mine.*"]], name: landing}
+)");
+  const auto& surfaces = scene.network.surfaces;
+  ASSERT_EQ(surfaces.size(), 2u);
+  EXPECT_LT((scene.network.mats[surfaces[0].mat].position - Vec3(1.0, 2.0, 0.0)).norm(), 1e-15);
+  EXPECT_LT((surfaces[0].axis - Vec3(0.0, 1.0, 0.0)).norm(), 1e-15);
+  EXPECT_LT((surfaces[0].leads_to - Vec3(-0.6, 0.8, 0.0)).norm(), 1e-15);
+  EXPECT_EQ(surfaces[1].axis, surfaces[0].leads_to);
+  EXPECT_EQ(surfaces[1].comes_from, surfaces[0].axis);
+  EXPECT_EQ(surfaces[1].leads_to, Vec3(Vec3::Zero()));
+  EXPECT_NO_THROW(engine::Network{scene.network});
+}
+
 class BadSurface : public BadScenes {};
 
 TEST_P(BadSurface, HasOneProblemAtItsPlace) {
@@ -140,6 +167,13 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadScene{kHead2, "matter:\n  a: ^{kind: plane, at_m: [0, 0]}\n",
                  "missing key 'normal' in matter 'a'", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: polyline, corners_m: ^[[0, 0]]}\n",
+                 "'corners_m' in matter 'a' must be at least 2 points, got 1", ""},
+        BadScene{kHead2,
+                 "matter:\n  a: {kind: polyline, corners_m: ^[[0, 0], [1, 0]], closed: true}\n",
+                 "'corners_m' in matter 'a' must be at least 3 points, got 2", ""},
+        BadScene{kHead2, "matter:\n  a: {kind: polyline, corners_m: ^[[0, 0], [1, 0], [1, 0]]}\n",
+                 "two corners of matter 'a' that follow each other are the same point", ""},
         BadScene{kHead2, "matter:\n  a: {kind: plane, at_m: [0, 0], normal: ^[0, 0]}\n",
                  "'normal' in matter 'a' must not be zero", ""},
         BadScene{kHead2, "matter:\n  a: {kind: plane, at_m: [0, 0], normal: ^z}\n",

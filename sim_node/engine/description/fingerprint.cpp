@@ -116,8 +116,10 @@ class Fingerprint {
     add(surface.mat);
     add(surface.axis);
     add(surface.half_size);
-    add(static_cast<std::uint64_t>(surface.both_sides) +
-        2 * static_cast<std::uint64_t>(surface.follows));
+    add(static_cast<std::uint64_t>(surface.both_sides));
+    if (surface.kind != SurfaceKind::kSegment) return;
+    add(surface.comes_from);
+    add(surface.leads_to);
   }
   void add(const TimeFunction& function) {
     for (const Program& formula : function.formula) add_all(formula.code);

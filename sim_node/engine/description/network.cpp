@@ -143,6 +143,12 @@ void check_surface(const NetworkDescription& description, const Surface& surface
     require(description.dimension == 2, name, "a segment in 2 dimensions alone");
     require_vector(surface.axis, description.dimension, name + ": axis");
     require(size[0] > 0.0 && size[0] < kNoEnd, name + ": half length", "finite and > 0");
+    for (const Vec3& neighbour : {surface.comes_from, surface.leads_to}) {
+      if (neighbour.isZero(0.0)) continue;
+      require(std::abs(neighbour.squaredNorm() - 1.0) < kRounding && neighbour.z() == 0.0 &&
+                  dot(neighbour, surface.axis) > -2.0 * kRounding,
+              name + ": axis of its neighbour", "a unit vector at less than a right angle, or 0");
+    }
     return;
   }
   if (surface.kind == SurfaceKind::kPlane) {

@@ -69,12 +69,33 @@ SurfaceDistance from_cylinder(const Surface& cylinder, const Vec3& from_centre) 
   return {distance, (from_side / distance) * outwards + (from_end / distance) * to_end};
 }
 
+/// Twice the area between two vectors of the plane, > 0 if the second one points to the left of the first.
+double area(const Vec3& a, const Vec3& b) noexcept {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// True if another segment acts alone on a place beyond an end of this one. The neighbour before this one owns the outer
+/// side of their corner, this one that of its end, but for what lies beside the neighbour. On the inner side both act.
+bool is_left_to_neighbour(const Surface& segment, double along, const Vec3& from_centre) noexcept {
+  const double half = segment.half_size[0];
+  if (!(along > -half)) {
+    const Vec3& before = segment.comes_from;
+    const Vec3 from_corner = from_centre + half * segment.axis;
+    return !before.isZero(0.0) && !(area(before, segment.axis) * area(before, from_corner) > 0.0);
+  }
+  if (!(along > half)) return false;
+  const Vec3& after = segment.leads_to;
+  const Vec3 from_corner = from_centre - half * segment.axis;
+  return dot(after, from_corner) > 0.0 &&
+         !(area(segment.axis, after) * area(after, from_corner) > 0.0);
+}
+
 SurfaceDistance from_segment(const Surface& segment, const Vec3& from_centre) noexcept {
   const double half = segment.half_size[0];
   const double along = dot(segment.axis, from_centre);
   const Vec3 apart = from_centre - std::clamp(along, -half, half) * segment.axis;
   const double distance = std::sqrt(dot(apart, apart));
-  const bool is_beyond = segment.follows && !(along > -half);
+  const bool is_beyond = is_left_to_neighbour(segment, along, from_centre);
   if (!(distance > 0.0)) return {0.0, Vec3::Zero(), is_beyond};
   return {distance, apart / distance, is_beyond};
 }

@@ -33,8 +33,10 @@ struct Surface {
                      ///< radius, half length of a cylinder; half length of a segment
   bool both_sides = false;  ///< a plane whose distance has no sign, and whose normal points to the
                             ///< MAT; of a segment that is so without it
-  bool follows =
-      false;  ///< a segment whose start is the end of another one, which acts on what is beyond it
+  Vec3 comes_from =
+      Vec3::Zero();  ///< axis of the segment that ends at the start of this one, and turns by less
+                     ///< than a right angle there: on the outer side of that corner it acts alone
+  Vec3 leads_to = Vec3::Zero();  ///< likewise of the one that starts at its end
 };
 
 /// Where a place is beside a surface.
@@ -42,7 +44,7 @@ struct SurfaceDistance {
   double distance = 0.0;       ///< [m], below 0 inside
   Vec3 normal = Vec3::Zero();  ///< unit vector away from the surface; 0 on one with both sides
   bool is_beyond =
-      false;  ///< beyond the start of a segment that follows another one: it does not act
+      false;  ///< beyond an end of a segment where its neighbour acts alone: this one does not
 };
 
 /// The distance of a place from the surface whose point or centre is at `centre`. Beside an edge or a corner the normal points

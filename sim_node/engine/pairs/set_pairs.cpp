@@ -359,7 +359,7 @@ std::size_t SetPairs::gather_at_surface(double range, std::size_t a, const std::
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::uint32_t column = neighbour[i];
     const SurfaceDistance from = surfaces_.distance(a, position_.data() + column);
-    // What is bound to a segment stays so beyond its start.
+    // What is bound to a segment stays so beyond its ends.
     if (!(from.distance < range) || (from.is_beyond && range < kNoRange)) continue;
     const bool still = from.normal.isZero(0.0);
     const double apart = std::max(from.distance, 0.0);

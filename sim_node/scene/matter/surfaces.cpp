@@ -132,7 +132,6 @@ GeneratedMatter read_polyline(Source& source) {
     segment.kind = SurfaceKind::kSegment;
     segment.mat = static_cast<std::uint32_t>(i);
     segment.half_size = Vec3(0.5 * side.norm(), 0.0, 0.0);
-    segment.follows = is_closed || i > 0;
     if (!(segment.half_size[0] > 0.0)) {
       reader.error_at("corners_m", "two corners of " + reader.what() +
                                        " that follow each other are the same point");
@@ -143,13 +142,24 @@ GeneratedMatter read_polyline(Source& source) {
     matter.radius_m.push_back(0.0);
     matter.surfaces.push_back(segment);
   }
+  const auto join = [](Surface& before, Surface& after) {
+    constexpr double kRightAngle = -1e-9;
+    if (engine::dot(before.axis, after.axis) < kRightAngle) return;
+    before.leads_to = after.axis;
+    after.comes_from = before.axis;
+  };
+  for (std::size_t i = 1; i < matter.surfaces.size(); ++i)
+    join(matter.surfaces[i - 1], matter.surfaces[i]);
+  if (is_closed) join(matter.surfaces.back(), matter.surfaces.front());
   return matter;
 }
 
 bool turn_surface(const Placement& placement, int space, Surface& surface) {
   if (surface.kind != SurfaceKind::kBox) {
     const bool is_across = space == 2 && surface.kind == SurfaceKind::kCylinder;
-    if (!is_across) surface.axis = (placement.turn * surface.axis).normalized();
+    if (is_across) return true;
+    for (Vec3* axis : {&surface.axis, &surface.comes_from, &surface.leads_to})
+      *axis = (placement.turn * *axis).normalized();
     return true;
   }
   Vec3 turned = Vec3::Zero();
