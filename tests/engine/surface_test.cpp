@@ -107,21 +107,23 @@ TEST(Surface, OfASegmentEndsWhereItsNeighboursAct) {
     const Vec3 right(0.8, -0.6, 0.0);
     if (is_joined) line.comes_from = line.leads_to = (line.axis + 0.5 * right).normalized();
     const Vec3 centre(1.0, 2.0, 0.0);
-    const auto at = [&](double along, double aside) {
+    const auto distance_at = [&](double along, double aside) {
       return distance_from(line, centre, centre + along * line.axis + aside * Vec3(-0.8, 0.6, 0.0));
     };
-    EXPECT_NEAR(at(0.2, -0.3).distance, 0.3, 1e-15);
-    EXPECT_LT((at(0.2, -0.3).normal - Vec3(0.8, -0.6, 0.0)).norm(), 1e-15);
-    EXPECT_FALSE(at(0.2, -0.3).is_beyond);
+    EXPECT_NEAR(distance_at(0.2, -0.3).distance, 0.3, 1e-15);
+    EXPECT_LT((distance_at(0.2, -0.3).normal - Vec3(0.8, -0.6, 0.0)).norm(), 1e-15);
+    EXPECT_FALSE(distance_at(0.2, -0.3).is_beyond);
     // It comes from its left side: its start turns to the left, its end to the right.
-    EXPECT_NEAR(at(0.8, 0.4).distance, 0.5, 1e-15);
-    EXPECT_EQ(at(0.8, 0.4).is_beyond, is_joined) << "beside the next one, on the outer side";
-    EXPECT_FALSE(at(0.6, 0.4).is_beyond) << "at the corner it acts, and the next one does not";
-    EXPECT_FALSE(at(0.8, -0.2).is_beyond) << "on the inner side both act";
-    EXPECT_NEAR(at(-0.8, -0.4).distance, 0.5, 1e-15);
-    EXPECT_EQ(at(-0.8, -0.4).is_beyond, is_joined) << "the outer side of its start";
-    EXPECT_FALSE(at(-0.8, 0.4).is_beyond) << "the inner side of its start";
-    EXPECT_EQ(at(0.0, 0.0).normal, Vec3(Vec3::Zero()));
+    EXPECT_NEAR(distance_at(0.8, 0.4).distance, 0.5, 1e-15);
+    EXPECT_EQ(distance_at(0.8, 0.4).is_beyond, is_joined)
+        << "beside the next one, on the outer side";
+    EXPECT_FALSE(distance_at(0.6, 0.4).is_beyond)
+        << "at the corner it acts, and the next one does not";
+    EXPECT_FALSE(distance_at(0.8, -0.2).is_beyond) << "on the inner side both act";
+    EXPECT_NEAR(distance_at(-0.8, -0.4).distance, 0.5, 1e-15);
+    EXPECT_EQ(distance_at(-0.8, -0.4).is_beyond, is_joined) << "the outer side of its start";
+    EXPECT_FALSE(distance_at(-0.8, 0.4).is_beyond) << "the inner side of its start";
+    EXPECT_EQ(distance_at(0.0, 0.0).normal, Vec3(Vec3::Zero()));
   }
 }
 
