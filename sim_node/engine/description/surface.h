@@ -43,7 +43,7 @@ struct Surface {
 struct SurfaceDistance {
   double distance = 0.0;       ///< [m], below 0 inside
   Vec3 normal = Vec3::Zero();  ///< unit vector away from the surface; 0 on one with both sides
-  bool is_beyond = false;      ///< of a segment, at a corner where its neighbour acts alone
+  bool is_beyond = false;      ///< a corner of a segment where its neighbour acts alone
 };
 
 /// The distance of a place from the surface whose point or centre is at `centre`. Beside an edge or a corner the normal points
