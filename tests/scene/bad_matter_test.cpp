@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{
             kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
             "'kind' in matter 'a' must be one of mass, fixed, points, string, ring, grid, lattice, "
-            "disc, ball, pack, skin, beam, plane, box, cylinder, got 'mas'",
+            "disc, ball, pack, skin, beam, plane, box, cylinder, polyline, got 'mas'",
             "did you mean 'mass'?"},
         BadScene{kHead1, "matter:\n  a: {kind: points, mass_kg: ^[1, 2], at_m: [0, 1, 2]}\n",
                  "'mass_kg' in matter 'a' must be one for all or one for each of the 3, got 2", ""},
