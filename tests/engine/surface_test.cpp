@@ -13,6 +13,7 @@
 #include "tests/engine/programs.h"
 #include "tests/engine/surfaces.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -482,7 +483,7 @@ TEST(Polyline, PushesOnceAtARidgeAndWithBothSidesInAValley) {
 }
 
 TEST(Polyline, HasAForceThatNeverJumps) {
-  for (unsigned seed = 1; seed <= 40; ++seed) {
+  for (unsigned seed = 1; seed <= static_cast<unsigned>(rounds(40)); ++seed) {
     Chance chance(seed);
     std::vector<Vec3> corners = {Vec3::Zero()};
     double angle = 0.0;

@@ -1,6 +1,7 @@
 // tests/engine/thread_team_test.cpp -- threads that share a step, and the bits they come to.
 #include "sim_node/engine/core/thread_team.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "sim_node/engine/matter/mat_blocks.h"
 #include "sim_node/engine/world.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -227,7 +229,9 @@ Ended played(const NetworkDescription& scene, std::size_t members, VectorWidth w
 
 TEST(ThreadTeam, OfAnySizeComesToTheSameBits) {
   using engine::IntegratorKind;
-  for (std::uint32_t seed = 0; seed < 9; ++seed) {
+  // One of each dimension at least.
+  const auto seeds = static_cast<std::uint32_t>(std::max(rounds(9), 3));
+  for (std::uint32_t seed = 0; seed < seeds; ++seed) {
     NetworkDescription scene = LargeNetwork(seed).network(1 + static_cast<int>(seed % 3));
     for (const IntegratorKind integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
       scene.integrator = integrator;

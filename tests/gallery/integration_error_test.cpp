@@ -6,7 +6,6 @@
 
 #include "sim_node/run/shadow_world.h"
 #include "tests/gallery/gallery_session.h"
-#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -15,7 +14,7 @@ class IntegrationError : public testing::TestWithParam<std::string> {};
 
 TEST_P(IntegrationError, IsBelowAHundredthOfTheLargestEnergy) {
   GallerySession session(GetParam() + ".yaml");
-  for (int half_seconds = 1; half_seconds <= rounds(12); ++half_seconds) {
+  for (int half_seconds = 1; half_seconds <= 12; ++half_seconds) {
     session.play_until(0.5 * half_seconds);
     const engine::Energy energy = session.world().energy();
     EXPECT_FALSE(sim::is_error_large(energy))

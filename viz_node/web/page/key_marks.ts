@@ -12,18 +12,17 @@ export function halfWidthOf(up: number[], pitchM: number): number[] {
 }
 
 /** Draws every key that plays a port. */
-export function drawKeys(keyboards: Keyboard[], view: SceneView, marks: Marks, stage: DOMRect, colour: string): void {
+export function drawKeys(keyboards: Keyboard[], view: SceneView, marks: Marks, colour: string): void {
   for (const { pitchM, keys } of keyboards) {
-    for (const key of keys) if (key.port !== '') drawKey(key, pitchM, view, marks, stage, colour);
+    for (const key of keys) if (key.port !== '') drawKey(key, pitchM, view, marks, colour);
   }
 }
 
-function drawKey(key: Key, pitchM: number, view: SceneView, marks: Marks, stage: DOMRect, colour: string): void {
+function drawKey(key: Key, pitchM: number, view: SceneView, marks: Marks, colour: string): void {
   const half = halfWidthOf(key.up, pitchM);
   const corner = (depthM: number, side: number): Point => {
     const middle = view.drawnAt(key.mat, key.rest.map((value, k) => value - depthM * key.up[k]!));
-    const { x, y } = view.screenOf(middle.map((value, k) => value + side * half[k]!));
-    return { x: x - stage.left, y: y - stage.top };
+    return view.screenOf(middle.map((value, k) => value + side * half[k]!));
   };
   const between = (from: number, to: number) => [corner(from, -1), corner(from, 1), corner(to, 1), corner(to, -1)];
   const depth = Math.min(key.wayM, Math.max(0, depthOf(key, view.place(key.mat))));

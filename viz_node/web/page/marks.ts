@@ -13,9 +13,12 @@ export class Marks {
   private readonly sheet = document.createElement('canvas');
   private readonly pen: CanvasRenderingContext2D | null;
 
+  private width = 0; // of the view [CSS pixels]
+  private height = 0;
+
   halo = '#000000'; // around letters: the colour of the background
 
-  constructor(private readonly container: HTMLElement) {
+  constructor(container: HTMLElement) {
     this.sheet.id = 'marks';
     container.append(this.sheet);
     this.pen = this.sheet.getContext('2d');
@@ -25,13 +28,17 @@ export class Marks {
     return this.sheet;
   }
 
+  /** @param width, height  of the view [CSS pixels] */
+  resize(width: number, height: number): void {
+    [this.width, this.height] = [width, height];
+  }
+
   begin(): void {
-    const { clientWidth, clientHeight } = this.container;
     const ratio = Math.min(window.devicePixelRatio, 2);
-    const [width, height] = [Math.round(clientWidth * ratio), Math.round(clientHeight * ratio)];
+    const [width, height] = [Math.round(this.width * ratio), Math.round(this.height * ratio)];
     if (this.sheet.width !== width || this.sheet.height !== height) [this.sheet.width, this.sheet.height] = [width, height];
     this.pen?.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.pen?.clearRect(0, 0, clientWidth, clientHeight);
+    this.pen?.clearRect(0, 0, this.width, this.height);
   }
 
   /** A dashed thread between two places. */

@@ -101,7 +101,8 @@ export class Page {
     window.addEventListener('error', (event) => this.note(event.error ?? event.message));
     window.addEventListener('unhandledrejection', (event) => this.note(event.reason));
     if (this.renderer === null) this.say('This browser has no WebGL 2: figures and signals only');
-    new ResizeObserver(() => this.view?.resize()).observe(this.stage);
+    new ResizeObserver(() => this.resize()).observe(this.stage);
+    this.resize();
     document.addEventListener('visibilitychange', () => {
       if (document.hidden) this.pendingIsLate = true;
       else this.askToDraw();
@@ -297,7 +298,7 @@ export class Page {
     const length = roundLength(160 * scale);
     const ruler = find('#ruler');
     (ruler.firstElementChild as HTMLElement).style.width = `${length / scale}px`;
-    ruler.lastElementChild!.textContent = joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, '');
+    setText(ruler.lastElementChild!, joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, ''));
     this.colouring.show(this.scale);
     this.motion.say(this.motion.textSince(this.view.countedSinceS));
     const { componentsVersion } = this.view.links ?? { componentsVersion: 0 };
@@ -432,13 +433,18 @@ export class Page {
     if (this.description !== null && this.view !== null) showLegend(this.legend);
   }
 
+  private resize(): void {
+    const { clientWidth, clientHeight } = this.stage;
+    this.marks.resize(clientWidth, clientHeight);
+    this.view?.resize(clientWidth, clientHeight);
+  }
+
   private drawMarks(): void {
     this.marks.begin();
     if (this.view === null || this.description === null) return;
-    const stage = this.stage.getBoundingClientRect();
-    if (this.lastFrame !== null) drawKeys(this.keyboards.list, this.view, this.marks, stage, this.palette.port);
-    if (this.names) drawNames(this.marks, this.view, stage, this.palette.text);
-    this.picked.draw(this.marks, stage, this.palette);
+    if (this.lastFrame !== null) drawKeys(this.keyboards.list, this.view, this.marks, this.palette.port);
+    if (this.names) drawNames(this.marks, this.view, this.palette.text);
+    this.picked.draw(this.marks, this.palette);
     this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });
   }
 

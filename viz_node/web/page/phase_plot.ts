@@ -12,6 +12,8 @@ export class PhasePlot {
   private readonly canvas = Object.assign(document.createElement('canvas'), { className: 'chart' });
   private readonly x: HTMLSelectElement;
   private readonly y: HTMLSelectElement;
+  private width = 0; // of the canvas [CSS pixels]
+  private height = 0;
 
   constructor(
     private readonly signals: Description['signals'],
@@ -22,11 +24,15 @@ export class PhasePlot {
     const head = document.createElement('header');
     head.append(this.y, ' against ', this.x);
     this.box.append(head, this.canvas);
+    new ResizeObserver(() => {
+      [this.width, this.height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+      this.changed();
+    }).observe(this.canvas);
   }
 
   /** Draws `windowS` seconds up to `endS`, with a dot at their end. */
   draw(store: SignalStore, windowS: number, endS: number, palette: Palette): void {
-    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const { width, height } = this;
     const pen = this.canvas.getContext('2d');
     if (pen === null || width === 0 || height === 0) return;
     const ratio = Math.min(window.devicePixelRatio, 2);

@@ -86,17 +86,14 @@ export class Picked {
   }
 
   /** Marks it in the frame that is drawn now, and writes its values. */
-  draw(marks: Marks, stage: DOMRect, palette: Palette): void {
+  draw(marks: Marks, palette: Palette): void {
     const view = this.view();
     if (view === null || this.thing === null) return;
-    const ring = (mat: number, room: number) => {
-      const middle = view.project(mat);
-      marks.ring({ x: middle.x - stage.left, y: middle.y - stage.top }, view.radiusOnScreen(mat) + room, palette.text);
-    };
+    const ring = (mat: number, room: number) => marks.ring(view.project(mat), view.radiusOnScreen(mat) + room, palette.text);
     if ('mat' in this.thing) {
       if (this.follows) view.rig.moveTo(view.drawnPlace(this.thing.mat));
       ring(this.thing.mat, 6);
-      if (this.showsForce) this.drawForce(view, this.thing.mat, marks, stage, palette);
+      if (this.showsForce) this.drawForce(view, this.thing.mat, marks, palette);
     } else {
       view.endsOf(this.thing.link).forEach((mat) => ring(mat, 3));
     }
@@ -104,16 +101,15 @@ export class Picked {
   }
 
   /** An arrow whose full length is the largest force of late. */
-  private drawForce(view: SceneView, mat: number, marks: Marks, stage: DOMRect, palette: Palette): void {
+  private drawForce(view: SceneView, mat: number, marks: Marks, palette: Palette): void {
     const force = view.forceOn(mat);
     if (force === null) return;
     const size = Math.hypot(...force);
     this.largestN = Math.max(size, FALL * this.largestN);
     if (size === 0) return;
-    const local = ({ x, y }: Point) => ({ x: x - stage.left, y: y - stage.top });
     const place = view.drawnPlace(mat);
-    const from = local(view.screenOf(place));
-    const tip = local(view.screenOf(place.map((x, k) => x + (force[k]! / size) * view.rig.metresPerPixel * 100)));
+    const from = view.screenOf(place);
+    const tip = view.screenOf(place.map((x, k) => x + (force[k]! / size) * view.rig.metresPerPixel * 100));
     marks.arrow(from, { x: tip.x - from.x, y: tip.y - from.y }, size / this.largestN, palette.text, joined(withUnit(size, 'N')));
   }
 
@@ -124,10 +120,13 @@ export class Picked {
     return 'mat' in this.thing ? tracedMat(view, this.thing.mat) : tracedLink(view, this.thing.link);
   }
 
+  /** What a person means who presses there on the page. */
   private thingAt(x: number, y: number): PickedThing | null {
     const view = this.view();
-    const mat = view?.matAt(x, y, NEAR_MAT_PX) ?? null;
-    const link = view?.linkAt(x, y, NEAR_LINK_PX) ?? null;
+    if (view === null) return null;
+    const point = view.ofPage(x, y);
+    const mat = view.matAt(point, NEAR_MAT_PX);
+    const link = view.linkAt(point, NEAR_LINK_PX);
     if (mat !== null && (link === null || mat.away <= Math.max(link.away, ON_MAT_PX))) return { mat: mat.index };
     return link === null ? null : { link: link.index };
   }

@@ -5,6 +5,7 @@ import { ofList, paletteOf, type Palette } from './colours.ts';
 import { joined, withUnit } from './format.ts';
 import { optionsOf, valuesPxOf } from './plot_options.ts';
 import type { Description } from './protocol.ts';
+import { setText } from './rows.ts';
 import { LONGEST_WINDOW_S, SignalStore } from './signal_store.ts';
 
 const MOST_PLOTS = 4; // at first; more when a person chooses more
@@ -100,10 +101,10 @@ export class Plots {
   private writeValues(plot: Plot): void {
     const column = plot.chart.cursor.idx ?? plot.shown[0]!.length - 1;
     plot.signals.forEach((_, i) => {
-      plot.values[i]!.textContent = joined(withUnit(plot.shown[i + 1]?.[column], plot.unit));
+      setText(plot.values[i]!, joined(withUnit(plot.shown[i + 1]?.[column], plot.unit)));
     });
     const pointedS = plot.chart.cursor.idx == null ? undefined : plot.shown[0]?.[column];
-    plot.pointedTime.textContent = typeof pointedS === 'number' ? `at ${pointedS.toFixed(3)} s` : '';
+    setText(plot.pointedTime, typeof pointedS === 'number' ? `at ${pointedS.toFixed(3)} s` : '');
   }
 
   private byUnit(signals: number[]): Map<string, number[]> {

@@ -22,7 +22,7 @@ interface Drag {
   mat: number; // of its handle
   start: number[]; // of the handle when it was taken hold of [m]
   grip: number[]; // where the pointer was in the scene then [m]
-  at: Point; // the pointer now, on the page
+  at: Point; // the pointer now, in the view
   event: number;
 }
 
@@ -113,12 +113,13 @@ export class PointerHand {
     const near = event.pointerType === 'mouse' ? NEAR_MOUSE_PX : NEAR_FINGER_PX;
     let best: number | null = null;
     let least = Number.POSITIVE_INFINITY;
+    const pointer = view.ofPage(event.clientX, event.clientY);
     for (const { port } of this.state?.ports ?? []) {
       const mats = [this.handleOf(port), this.description?.tools[port] ?? null];
       for (const mat of mats) {
         if (mat === null) continue;
         const place = view.project(mat);
-        const away = Math.hypot(place.x - event.clientX, place.y - event.clientY) - view.radiusOnScreen(mat);
+        const away = Math.hypot(place.x - pointer.x, place.y - pointer.y) - view.radiusOnScreen(mat);
         if (away > near || away >= least) continue;
         [best, least] = [port, away];
       }
@@ -141,8 +142,9 @@ export class PointerHand {
       // a pointer that is gone already
     }
     const start = view.place(mat);
-    const grip = view.unproject(event.clientX, event.clientY, view.drawnAt(mat, start));
-    this.drags.set(event.pointerId, { port, mat, start, grip, at: { x: event.clientX, y: event.clientY }, event: 0 });
+    const pointer = view.ofPage(event.clientX, event.clientY);
+    const grip = view.unproject(pointer, view.drawnAt(mat, start));
+    this.drags.set(event.pointerId, { port, mat, start, grip, at: pointer, event: 0 });
     this.stage.classList.add('dragging');
     this.send(event.pointerId, event.timeStamp);
   }
@@ -154,7 +156,7 @@ export class PointerHand {
       return;
     }
     event.stopPropagation();
-    drag.at = { x: event.clientX, y: event.clientY };
+    drag.at = this.view()?.ofPage(event.clientX, event.clientY) ?? drag.at;
     this.send(event.pointerId, event.timeStamp);
     this.changed();
   }
@@ -172,7 +174,7 @@ export class PointerHand {
   private wanted(drag: Drag): number[] {
     const view = this.view();
     if (view === null) return drag.start;
-    const now = view.unproject(drag.at.x, drag.at.y, view.drawnAt(drag.mat, drag.start));
+    const now = view.unproject(drag.at, view.drawnAt(drag.mat, drag.start));
     return drag.start.map((start, k) => start + (now[k]! - drag.grip[k]!) / view.exaggeration);
   }
 
@@ -194,20 +196,18 @@ export class PointerHand {
   draw(marks: Marks, colours: HandColours): void {
     const view = this.view();
     if (view === null || this.state === null) return;
-    const box = this.stage.getBoundingClientRect();
-    const local = (point: Point) => ({ x: point.x - box.left, y: point.y - box.top });
     for (const port of this.state.ports) {
       const mat = this.handleOf(port.port);
       if (mat === null || !port.held || !port.plays) continue;
       const mine = this.isMine(port);
       const colour = mine ? colours.mine : colours.others;
-      const handle = local(view.project(mat));
+      const handle = view.project(mat);
       const drag = [...this.drags.values()].find((one) => one.port === port.port);
       const place = view.drawnPlace(mat);
-      const hand = local(view.screenOf(view.drawnAt(mat, drag !== undefined ? this.wanted(drag) : port.target_m)));
+      const hand = view.screenOf(view.drawnAt(mat, drag !== undefined ? this.wanted(drag) : port.target_m));
       marks.thread(handle, hand, colour);
       const force = Math.hypot(...port.force_n);
-      const tip = local(view.screenOf(place.map((x, k) => x + (port.force_n[k]! / (force || 1)) * view.rig.metresPerPixel * 100)));
+      const tip = view.screenOf(place.map((x, k) => x + (port.force_n[k]! / (force || 1)) * view.rig.metresPerPixel * 100));
       marks.arrow(handle, { x: tip.x - handle.x, y: tip.y - handle.y }, force / FULL_ARROW_N, colour, joined(withUnit(force, 'N')));
       if (!mine) marks.text({ x: handle.x + 14, y: handle.y - 14 }, `held on page ${port.holder}`, colour);
       if (mine && port.event > this.seenEvent) this.noteDelay(port.event);

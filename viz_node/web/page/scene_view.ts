@@ -18,14 +18,16 @@ import type { Quality } from './quality.ts';
 import { boundsWith } from './surface_shape.ts';
 import { SurfaceView } from './surfaces.ts';
 import { CameraRig, type Edges, type Pose } from './camera_rig.ts';
+import type { Point } from './marks.ts';
 
 // More MATs than this are sampled where every one would cost too much: bounds, typical lengths, fastest speed.
 const SAMPLE = 4000;
 const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
 const SMALL = 0.4; // of the radius of balls, where the links are looked at
+const FOLLOWED = 1000; // of them are looked at, whether all of it is seen
 const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
-/** A MAT or a link near a point of the page. */
+/** A MAT or a link near a point of the view. */
 export interface Near {
   index: number;
   away: number; // [CSS pixels]
@@ -55,6 +57,10 @@ export class SceneView {
   private colouring: Colouring = 'bodies';
   private referenceS = 0; // simulated time that stretches are counted from [s]
   private tintedVersion = 0; // of the components that have their colours
+  private width = 0; // of the view [CSS pixels]
+  private height = 0;
+  private knownEdges: Edges | null = null; // null: to be measured
+  private readonly edgeWatch = new ResizeObserver(() => (this.knownEdges = null));
 
   constructor(
     private readonly container: HTMLElement,
@@ -93,7 +99,8 @@ export class SceneView {
     this.forces = new NetForces(topology.masses);
     this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
-    this.resize();
+    for (const one of container.querySelectorAll('#sound, #legend, #control, #tools')) this.edgeWatch.observe(one);
+    this.resize(container.clientWidth, container.clientHeight);
   }
 
   private matterShape(): Shape {
@@ -135,7 +142,7 @@ export class SceneView {
       this.layGround();
     } else if (++this.framesSinceLook >= this.topology.matCount / MATS_A_FRAME) {
       this.framesSinceLook = 0;
-      this.rig.follow(this.bounds(ASTRAY));
+      this.rig.follow(this.bounds(ASTRAY, FOLLOWED));
     }
   }
 
@@ -149,15 +156,21 @@ export class SceneView {
     this.canvas.draw(camera.matrixWorldInverse.elements, camera.projectionMatrix.elements);
   }
 
-  resize(): void {
-    const { clientWidth, clientHeight } = this.container;
-    this.canvas.resize(clientWidth, clientHeight);
-    this.rig.resize(clientWidth, clientHeight);
+  /** @param width, height  of the view [CSS pixels] */
+  resize(width: number, height: number): void {
+    [this.width, this.height] = [width, height];
+    this.knownEdges = null;
+    this.canvas.resize(width, height);
+    this.rig.resize(width, height);
     this.changed();
   }
 
   /** Legend and buttons above, tools below: a scene that is fitted stands between them. */
   private edges(): Edges {
+    return (this.knownEdges ??= this.measureEdges());
+  }
+
+  private measureEdges(): Edges {
     const stage = this.container.getBoundingClientRect();
     const boxes = (selector: string) => [...this.container.querySelectorAll(selector)].map((one) => one.getBoundingClientRect()).filter(({ height }) => height > 0);
     const top = boxes('#legend, #control').map((box) => box.bottom - stage.top);
@@ -193,8 +206,8 @@ export class SceneView {
     return size.z > 0.2 * size.x && size.x > 0.2 * size.z;
   }
 
-  /** Nearest MAT to a point of the page, and how far its edge is [CSS pixels]; null when none is within so many. */
-  matAt(x: number, y: number, within: number): Near | null {
+  /** Nearest MAT to a point of the view, and how far its edge is [CSS pixels]; null when none is within so many. */
+  matAt({ x, y }: Point, within: number): Near | null {
     let best: Near | null = null;
     for (let mat = 0; mat < this.topology.matCount; ++mat) {
       const middle = this.project(mat);
@@ -205,11 +218,11 @@ export class SceneView {
   }
 
   /** Likewise the nearest link that is drawn. */
-  linkAt(x: number, y: number, within: number): Near | null {
+  linkAt({ x, y }: Point, within: number): Near | null {
     let best: Near | null = null;
     for (let link = 0; this.quality.links && link < this.topology.linkCount; ++link) {
       if (this.stateOf(link) >= LINK_IS_IDLE) continue;
-      const [a, b] = this.endsOf(link).map((mat) => this.project(mat)) as [{ x: number; y: number }, { x: number; y: number }];
+      const [a, b] = this.endsOf(link).map((mat) => this.project(mat)) as [Point, Point];
       const [dx, dy] = [b.x - a.x, b.y - a.y];
       const share = Math.min(1, Math.max(0, ((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy || 1)));
       const away = Math.hypot(a.x + share * dx - x, a.y + share * dy - y);
@@ -348,24 +361,34 @@ export class SceneView {
     return place.map((value, k) => value + extra * (value - this.reference.array[3 * index + k]!));
   }
 
-  /** Where MAT `index` is on the page [CSS pixels]. */
-  project(index: number): { x: number; y: number } {
+  /** Where MAT `index` is in the view [CSS pixels]. */
+  project(index: number): Point {
     return this.screenOf(this.drawnPlace(index));
   }
 
-  /** Where a place of the scene is on the page [CSS pixels]. */
-  screenOf(place: number[]): { x: number; y: number } {
+  /** Where a place of the scene is in the view [CSS pixels]. */
+  screenOf(place: number[]): Point {
     const point = new Vector3().fromArray(place).project(this.rig.camera);
-    const box = this.canvas.element.getBoundingClientRect();
-    return { x: box.left + (0.5 + 0.5 * point.x) * box.width, y: box.top + (0.5 - 0.5 * point.y) * box.height };
+    return { x: (0.5 + 0.5 * point.x) * this.width, y: (0.5 - 0.5 * point.y) * this.height };
   }
 
-  /** The place [m] behind a point of the page that is as far from the camera as `through`. */
-  unproject(x: number, y: number, through: number[]): number[] {
-    const box = this.canvas.element.getBoundingClientRect();
+  /** The place [m] behind a point of the view that is as far from the camera as `through`. */
+  unproject({ x, y }: Point, through: number[]): number[] {
     const depth = new Vector3().fromArray(through).project(this.rig.camera).z;
-    const point = new Vector3((2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height, depth);
+    const point = new Vector3((2 * x) / this.width - 1, 1 - (2 * y) / this.height, depth);
     return point.unproject(this.rig.camera).toArray();
+  }
+
+  /** A point of the view as one of the page. */
+  onPage({ x, y }: Point): Point {
+    const { left, top } = this.canvas.element.getBoundingClientRect();
+    return { x: left + x, y: top + y };
+  }
+
+  /** A point of the page as one of the view. */
+  ofPage(x: number, y: number): Point {
+    const { left, top } = this.canvas.element.getBoundingClientRect();
+    return { x: x - left, y: y - top };
   }
 
   /** Radius of MAT `index` as it is drawn, at the middle of the scene [CSS pixels]. */
@@ -373,11 +396,10 @@ export class SceneView {
     return (this.uniforms.radius_share * this.radii.array[index]!) / this.rig.metresPerPixel;
   }
 
-  /** Colour of one pixel of the view as it is drawn now, 0..255; a place on the page [CSS pixels]. */
-  pixelAt(x: number, y: number): number[] {
+  /** Colour of one pixel of the view as it is drawn now, 0..255. */
+  pixelAt({ x, y }: Point): number[] {
     this.draw();
-    const box = this.canvas.element.getBoundingClientRect();
-    return this.canvas.pixelAt(x - box.left, box.bottom - y);
+    return this.canvas.pixelAt(x, this.height - y);
   }
 
   image(): Promise<Blob | null> {
@@ -386,17 +408,18 @@ export class SceneView {
   }
 
   dispose(): void {
+    this.edgeWatch.disconnect();
     this.rig.dispose();
     this.canvas.dispose();
   }
 
   /** What holds the surfaces and the MATs with their radii, but for this share of these at either end of each axis. */
-  private bounds(outliers = 0): Box3 {
-    return boundsWith(this.surfaces, this.matterBounds(outliers), this.space);
+  private bounds(outliers = 0, sample = SAMPLE): Box3 {
+    return boundsWith(this.surfaces, this.matterBounds(outliers, sample), this.space);
   }
 
-  private matterBounds(outliers = 0): Box3 {
-    const stride = Math.max(1, Math.floor(this.topology.matCount / SAMPLE));
+  private matterBounds(outliers = 0, sample = SAMPLE): Box3 {
+    const stride = Math.max(1, Math.floor(this.topology.matCount / sample));
     const count = Math.ceil(this.topology.matCount / stride);
     const left = Math.floor(outliers * count);
     const radii = this.radii.array;

@@ -3,6 +3,7 @@ import uPlot from 'uplot';
 import { ofList, type Palette } from './colours.ts';
 import { joined, withUnit } from './format.ts';
 import { optionsOf, valuesPxOf } from './plot_options.ts';
+import { setText } from './rows.ts';
 import { LONGEST_WINDOW_S } from './signal_store.ts';
 
 const MOST_TRACES = 4; // the oldest goes
@@ -24,6 +25,7 @@ class Trace {
   private readonly times: number[] = [];
   private readonly rows: number[][];
   private figures: HTMLElement[] = [];
+  private readonly watch = new ResizeObserver(() => this.resize());
 
   constructor(readonly traced: Traced, close: () => void) {
     this.rows = traced.series.map(() => []);
@@ -31,6 +33,7 @@ class Trace {
     button.setAttribute('aria-label', `Plot ${traced.title} no longer`);
     button.addEventListener('click', close);
     this.box.append(this.head, this.canvas);
+    this.watch.observe(this.canvas);
     this.head.append(Object.assign(document.createElement('span'), { className: 'at', textContent: traced.title }), button);
   }
 
@@ -54,13 +57,12 @@ class Trace {
     });
     const look = { unit: this.traced.unit, seriesCount: this.rows.length, palette, valuesPx: valuesPxOf([this.traced.unit]), logarithmic: false, pointed: () => this.writeFigures() };
     this.chart = new uPlot(optionsOf(look), [[]], this.canvas);
+    this.resize();
   }
 
   draw(windowS: number, endS: number): void {
-    const { chart, canvas } = this;
+    const { chart } = this;
     if (chart === null) return;
-    const [width, height] = [Math.max(80, canvas.clientWidth), Math.max(40, canvas.clientHeight)];
-    if (width !== chart.width || height !== chart.height) chart.setSize({ width, height });
     chart.batch(() => {
       chart.setData([this.times, ...this.rows], false);
       chart.setScale('x', { min: endS - windowS, max: endS });
@@ -71,10 +73,17 @@ class Trace {
   /** The values under the pointer, or else the newest. */
   private writeFigures(): void {
     const column = this.chart?.cursor.idx ?? this.times.length - 1;
-    this.figures.forEach((figure, i) => (figure.textContent = joined(withUnit(this.rows[i]![column], this.traced.unit))));
+    this.figures.forEach((figure, i) => setText(figure, joined(withUnit(this.rows[i]![column], this.traced.unit))));
+  }
+
+  private resize(): void {
+    const { chart, canvas } = this;
+    const [width, height] = [Math.max(80, canvas.clientWidth), Math.max(40, canvas.clientHeight)];
+    if (width !== chart?.width || height !== chart.height) chart?.setSize({ width, height });
   }
 
   close(): void {
+    this.watch.disconnect();
     this.chart?.destroy();
     this.box.remove();
   }

@@ -119,9 +119,9 @@ export function exposeViz(page: Page): void {
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
     force: (index) => page.view?.forceOn(index) ?? null,
-    project: (index) => page.view?.project(index) ?? null,
-    screenOf: (place) => page.view?.screenOf(place) ?? null,
+    project: (index) => page.view?.onPage(page.view.project(index)) ?? null,
+    screenOf: (place) => page.view?.onPage(page.view.screenOf(place)) ?? null,
     soundSpectrum: () => page.sound.spectrum(),
-    pixelAt: (x, y) => page.view?.pixelAt(x, y) ?? null,
+    pixelAt: (x, y) => page.view?.pixelAt(page.view.ofPage(x, y)) ?? null,
   };
 }
