@@ -50,13 +50,11 @@ bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& ra
          });
 }
 
-/// True if a range is the MAT of a surface: it is drawn as that.
+/// True if a range is the MAT of a surface, or those of a polyline: they are drawn as that.
 bool is_surface(const msg::SceneDescription& description, const msg::NamedRange& range) {
-  return range.count() == 1 &&
-         std::ranges::any_of(description.surfaces(),
-                             [&range](const msg::SurfaceDescription& surface) {
-                               return range.name() == surface.name();
-                             });
+  return std::ranges::any_of(
+      description.surfaces(),
+      [&range](const msg::SurfaceDescription& surface) { return range.name() == surface.name(); });
 }
 
 }  // namespace
@@ -93,7 +91,8 @@ void ScenePainter::find_looks(const msg::SceneDescription& description) {
       look_[range.first()] = is_ring ? Look::kRing : Look::kTool;
       (is_ring ? has_rings_ : has_punctual_tools_) = true;
     }
-    if (is_surface(description, range)) look_[range.first()] = Look::kSurface;
+    if (is_surface(description, range))
+      std::fill_n(look_.begin() + range.first(), range.count(), Look::kSurface);
   }
   // A port of role liaison plays a mass.
   for (const msg::PortDescription& port : description.ports()) {
@@ -149,10 +148,9 @@ void ScenePainter::find_coloured_parts(const msg::SceneDescription& description)
 
 void ScenePainter::find_coloured_surfaces(const msg::SceneDescription& description) {
   for (const msg::SurfaceDescription& surface : surfaces_) {
-    const auto range =
-        std::ranges::find_if(description.matter(), [&surface](const msg::NamedRange& named) {
-          return named.count() == 1 && named.name() == surface.name();
-        });
+    const auto range = std::ranges::find_if(
+        description.matter(),
+        [&surface](const msg::NamedRange& named) { return named.name() == surface.name(); });
     const bool has_mat = range != description.matter().end();
     const std::optional<Colour> colour = has_mat ? colours_.wanted(range->first()) : std::nullopt;
     if (!colour) {

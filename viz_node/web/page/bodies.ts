@@ -78,7 +78,8 @@ export class Bodies {
     }
     if (this.list.length === 0 && this.hasMass(0, matCount)) this.list.push({ name: 'mass', first: 0, number: 0, wanted: null });
     const names = new Set(description.surfaces.map(({ name }) => name));
-    this.shapes = description.matter.filter(({ name, count }) => count === 1 && names.has(name)).map(({ first }) => first);
+    const ofShapes = description.matter.filter(({ name }) => names.has(name)); // of a polyline several
+    this.shapes = ofShapes.flatMap(({ first, count }) => Array.from({ length: count }, (_, i) => first + i));
     const isPlain = (mat: number) => this.given.of(mat) === null;
     this.hasFixedPoints = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] === 0 && isPlain(mat) && !this.shapes.includes(mat));
     this.hasFixedBalls = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] !== 0 && isPlain(mat));
@@ -135,7 +136,7 @@ export class Bodies {
 
   /** The colours that the scene gives to its surfaces, in their order; null where it gives none. */
   get ofSurfaces(): (string | null)[] {
-    const mats = new Map(this.description.matter.filter(({ count }) => count === 1).map(({ name, first }) => [name, first]));
+    const mats = new Map(this.description.matter.map(({ name, first }) => [name, first]));
     return this.description.surfaces.map(({ name }) => this.given.of(mats.get(name) ?? -1));
   }
 
