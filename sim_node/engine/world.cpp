@@ -60,10 +60,16 @@ VectorWidth World::vector_width() const noexcept {
 void World::share_steps(std::shared_ptr<ThreadTeam> team) noexcept {
   CORDIS_ASSERT(team != nullptr);
   state_->team = std::move(team);
+  if (state_->freezing) return;
+  state_->sets.expect_team(state_->team->member_count());
+  make_room();
 }
 
 void World::swap_teams(World& other) noexcept {
   state_->team.swap(other.state_->team);
+  state_->sets.swap_team_room(other.state_->sets);
+  if (!state_->freezing) state_->sets.expect_team(state_->team->member_count());
+  if (!other.state_->freezing) other.state_->sets.expect_team(other.state_->team->member_count());
 }
 
 ThreadTeam& World::team() noexcept {
@@ -71,7 +77,8 @@ ThreadTeam& World::team() noexcept {
 }
 
 std::size_t World::block_count() const noexcept {
-  return state_->freezing ? 1 : state_->blocks.count();
+  if (state_->freezing) return 1;
+  return std::max(state_->blocks.count(), state_->sets.part_count());
 }
 
 void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {

@@ -118,6 +118,46 @@ std::shared_ptr<const Network> melt(int cells, double temperature) {
   return std::make_shared<const Network>(network);
 }
 
+std::shared_ptr<const Network> pack(int dimension, std::uint32_t balls) {
+  NetworkDescription network;
+  network.dimension = dimension;
+  network.step = 1e-3;
+  const auto edge = static_cast<std::uint32_t>(
+      std::ceil(std::pow(static_cast<double>(balls), 1.0 / dimension) - 1e-9));
+  constexpr double kDiameter = 0.1;  // [m]
+  std::mt19937 random(7);
+  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
+  for (std::uint32_t z = 0; z < (dimension > 2 ? edge : 1); ++z) {
+    for (std::uint32_t y = 0; y < edge; ++y) {
+      for (std::uint32_t x = 0; x < edge; ++x) {
+        engine::Mat mat;
+        mat.mass = 1.0;
+        mat.position = 0.99 * kDiameter * Vec3(x, y, z);
+        const auto is_at_edge = [edge](std::uint32_t place) {
+          return place == 0 || place + 1 == edge;
+        };
+        if (is_at_edge(x) || is_at_edge(y) || (dimension > 2 && is_at_edge(z)))
+          mat.kind = engine::MatKind::kFixed;
+        else
+          mat.velocity = Vec3(uniform(), uniform(), dimension > 2 ? uniform() : 0.0);
+        network.mats.push_back(mat);
+      }
+    }
+  }
+  engine::StateMachine state_machine;
+  state_machine.states.resize(1);
+  state_machine.states[0].stiffness = 2000.0;
+  state_machine.states[0].viscosity = 0.01;
+  state_machine.states[0].pulls = false;
+  network.state_machines = {state_machine};
+  engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) set.set_p.push_back(i);
+  set.range = kDiameter;
+  set.rest_length = kDiameter;
+  network.sets = {set};
+  return std::make_shared<const Network>(network);
+}
+
 std::shared_ptr<const Network> net_of_links(int dimension, LinkKind kind, std::uint32_t side) {
   NetworkDescription network;
   network.dimension = dimension;

@@ -14,6 +14,11 @@ namespace cordis::bench {
 /// counter `pairs_per_ball` stands beside the time (27.6 in the bulk).
 std::shared_ptr<const engine::Network> melt(int cells = 20, double temperature = 1.44);
 
+/// Balls in a square or cubic lattice, pressed into their neighbours, that move: contacts which push, with
+/// viscosity. Those at the edge are fixed.
+/// @param balls  as many at least, in a square or a cube
+std::shared_ptr<const engine::Network> pack(int dimension, std::uint32_t balls);
+
 /// What the links of a net are.
 enum LinkKind : int {
   kLinear = 0,

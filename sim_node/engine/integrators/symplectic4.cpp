@@ -95,7 +95,7 @@ void Symplectic4::add_forces(WorldState& world) noexcept {
   world.bends.add_forces(at_rest);
   PairStep pairs = world.pair_step(true);
   pairs.sums_contacts = true;  // those of the last stage stay
-  world.sets.add_forces(pairs, at_rest);
+  world.sets.add_forces(pairs, at_rest, world.team.get());
 }
 
 Energy Symplectic4::energy(WorldState& world) const noexcept {

@@ -120,7 +120,7 @@ void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   state_links.add_forces_before_start(state_machines, table, columns);
   maxwell_links.add_held_forces(state_machines, columns);
   bends.add_forces(columns);
-  sets.add_forces(pair_step(true), columns);
+  sets.add_forces(pair_step(true), columns, team.get());
 }
 
 void WorldState::start_one_period_ago() noexcept {
@@ -175,7 +175,7 @@ StepEnergy WorldState::add_maxwell_forces(const ForceColumns& columns) noexcept 
 StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
   if (sets.empty()) return {};
   return freezing ? sets.add_pair_forces(pair_step(false), columns)
-                  : sets.add_forces(pair_step(false), columns);
+                  : sets.add_forces(pair_step(false), columns, team.get());
 }
 
 void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {

@@ -24,21 +24,30 @@ std::size_t reach_of(const std::vector<Link>& links) {
   return std::max<std::size_t>(1, *place);
 }
 
-/// @param reach  of the links
-std::size_t block_count(const NetworkDescription& description, std::size_t reach) {
+std::size_t largest_set(const NetworkDescription& description) {
+  std::size_t balls = 0;
+  for (const SetLiaison& set : description.sets)
+    balls = std::max(balls, set.set_p.size() + set.set_q.size());
+  return balls;
+}
+
+/// Blocks, as far as the work lets there be.
+std::size_t block_count(const NetworkDescription& description) {
   const std::size_t links = description.links.size();
-  if (links < MatBlocks::kMinLinks) return 1;
-  const std::size_t by_reach = description.mats.size() / (kBatchRows + reach);
-  const std::size_t by_size = links / MatBlocks::kLinksOfBlock;
-  return std::clamp<std::size_t>(std::min(by_reach, by_size), 1, MatBlocks::kMaxBlocks);
+  const std::size_t balls = largest_set(description);
+  const std::size_t by_links = links < MatBlocks::kMinLinks ? 1 : links / MatBlocks::kLinksOfBlock;
+  const std::size_t by_balls = balls < MatBlocks::kMinBalls ? 1 : balls / MatBlocks::kBallsOfBlock;
+  return std::min(std::max(by_links, by_balls), MatBlocks::kMaxBlocks);
 }
 
 }  // namespace
 
 MatBlocks::MatBlocks(const NetworkDescription& description) : first_{0} {
-  const std::size_t reach = description.links.size() < kMinLinks ? 0 : reach_of(description.links);
-  const std::size_t count = block_count(description, reach);
   const std::size_t mat_count = description.mats.size();
+  const std::size_t by_work = block_count(description);
+  const std::size_t reach =
+      by_work == 1 || description.links.empty() ? 0 : reach_of(description.links);
+  const std::size_t count = std::clamp<std::size_t>(mat_count / (kBatchRows + reach), 1, by_work);
   // The work of a MAT: itself, and the links that begin at it.
   std::vector<std::uint32_t> work(count > 1 ? mat_count : 0, 1);
   if (count > 1) {

@@ -20,9 +20,13 @@ class MatBlocks {
   /// Linear links of a block, on average at least.
   static constexpr std::size_t kLinksOfBlock = 1024;
   static constexpr std::size_t kMaxBlocks = 128;
+  /// Balls of a set that count like as many linear links.
+  static constexpr std::size_t kMinBalls = 4096;
+  static constexpr std::size_t kBallsOfBlock = 256;
 
   /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each as that
-  /// lets them have; one where the network has few linear links, or links that join MATs of any two places.
+  /// lets them have; one where the network has few linear links and no large set, or links that join MATs of any two
+  /// places.
   explicit MatBlocks(const NetworkDescription& description);
 
   std::size_t count() const noexcept { return first_.size() - 1; }

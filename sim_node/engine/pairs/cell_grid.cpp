@@ -163,6 +163,13 @@ CellGrid::NeighbourCells CellGrid::around_cell(std::size_t cell, std::size_t las
   return found;
 }
 
+std::size_t CellGrid::cell_of_place(std::size_t place) const noexcept {
+  const auto first_end = begin_.begin() + 1;
+  const auto last_end = first_end + static_cast<std::ptrdiff_t>(cell_count());
+  const auto found = std::upper_bound(first_end, last_end, place);
+  return found == last_end ? 0 : static_cast<std::size_t>(found - first_end);
+}
+
 CellTable CellGrid::table() const noexcept {
   return {x_.data(), y_.data(), z_.data(), number_.data(), member_.data()};
 }

@@ -58,6 +58,8 @@ class CellGrid {
   std::size_t cell_count() const noexcept { return extent_[0] * extent_[1] * extent_[2]; }
   std::size_t begin_of(std::size_t cell) const noexcept { return begin_[cell]; }
   std::size_t end_of(std::size_t cell) const noexcept { return begin_[cell + 1]; }
+  /// The cell that holds a place, 0 for one past the last. Real time: O(log cells).
+  std::size_t cell_of_place(std::size_t place) const noexcept;
   CellTable table() const noexcept;
 
  private:

@@ -59,9 +59,10 @@ NeighbourList::NeighbourList(std::size_t count_p, std::size_t count_q, int dimen
       grid_(count_p, dimension),
       used_(count_p, count_q, capacity_),
       next_(count_p, count_q, capacity_),
-      fill_(count_p, 0),
+      fill_(count_p, 0U),
       found_begin_(count_p + count_q, 0),
-      found_(capacity_ + count_p + kPairBatch, 0U) {
+      found_(capacity_ + count_p + kPairBatch, 0U),
+      parts_(1) {
   CORDIS_ASSERT(range > 0.0);
   used_.skin = kFirstSkin * range;
 }
@@ -81,39 +82,69 @@ double NeighbourList::free_way_square(const Listing& listing) noexcept {
   return 0.25 * listing.skin * listing.skin * (1.0 - kMargin);
 }
 
-double NeighbourList::move_square(const Listing& listing, const double* position) const noexcept {
-  return kernel_->largest_move(position, listing.from.data(), member_count());
+double NeighbourList::move_square(const Listing& listing, const double* position,
+                                  ThreadTeam* team) noexcept {
+  const double* from = listing.from.data();
+  if (team == nullptr) return kernel_->largest_move(position, from, member_count());
+  CORDIS_ASSERT(team->member_count() <= parts_.size());
+  const std::size_t batches = padded(member_count(), kPairBatch) / kPairBatch;
+  team->run([&](std::size_t member) noexcept {
+    const ThreadTeam::Share share = team->share(member, batches);
+    const std::size_t first = kPairBatch * share.first;
+    const std::size_t last = std::min(kPairBatch * share.last, member_count());
+    parts_[member].move_square =
+        kernel_->largest_move(position + 4 * first, from + 4 * first, last - first);
+  });
+  double largest = 0.0;
+  for (std::size_t member = 0; member < team->member_count(); ++member)
+    largest = std::max(largest, parts_[member].move_square);
+  return largest;
 }
 
-void NeighbourList::refresh(const double* position) noexcept {
+void NeighbourList::refresh(const double* position, ThreadTeam* team) noexcept {
   if (!valid_ || !whole_) {
-    build(position, used_.skin);
+    build(position, used_.skin, team);
     return;
   }
   ++used_.age;
   if (stage_ != Stage::kNothing) ++next_.age;
-  const double moved = move_square(used_, position);
+  const double moved = move_square(used_, position, team);
   const double speed = std::sqrt(moved) / static_cast<double>(used_.age);
   const bool is_over = !(moved <= free_way_square(used_));
   if (is_over) {
     // what is left of the next list is made at once if it will last for half of its time
-    const bool is_worth_it =
-        stage_ != Stage::kNothing && move_square(next_, position) <= 0.25 * free_way_square(next_);
-    if (is_worth_it) advance_next(position, whole_work());
+    const bool is_worth_it = stage_ != Stage::kNothing &&
+                             move_square(next_, position, team) <= 0.25 * free_way_square(next_);
+    if (is_worth_it) advance_next(position, whole_work(), team);
   } else if (stage_ != Stage::kNothing) {
-    advance_next(position, slice_);
+    advance_next(position, slice_, team);
   } else if (const std::size_t slices = slices_for(speed); slices > 0) {
     const double while_found = kFindShare * static_cast<double>(slices) + 1.0;
-    begin_next(position, choose_skin(speed) + 2.0 * speed * while_found);
+    begin_next(position, choose_skin(speed) + 2.0 * speed * while_found, team);
     slice_ = whole_work() / slices + 1;
   }
-  if (stage_ == Stage::kReady && move_square(next_, position) <= free_way_square(next_)) {
+  if (stage_ == Stage::kReady && move_square(next_, position, team) <= free_way_square(next_)) {
     use_next();
   } else if (is_over) {
-    build(position, choose_skin(speed));
+    build(position, choose_skin(speed), team);
   } else if (stage_ == Stage::kReady) {
     stage_ = Stage::kNothing;
   }
+}
+
+void NeighbourList::make_room_for_team(std::size_t member_count) {
+  if (member_count <= parts_.size()) return;
+  fill_.resize(member_count * count_p_, 0U);
+  parts_.resize(member_count);
+}
+
+void NeighbourList::swap_room_for_team(NeighbourList& other) noexcept {
+  CORDIS_ASSERT(count_p_ == other.count_p_ && count_q_ == 0 && other.count_q_ == 0);
+  fill_.swap(other.fill_);
+  parts_.swap(other.parts_);
+  // What stood in the room belonged to a list that was being made.
+  stage_ = Stage::kNothing;
+  other.stage_ = Stage::kNothing;
 }
 
 bool NeighbourList::covers(const double* position,
@@ -166,44 +197,106 @@ std::size_t NeighbourList::whole_work() const noexcept {
   return kWholeWork * later_count();
 }
 
-void NeighbourList::build(const double* position, double skin) noexcept {
+void NeighbourList::build(const double* position, double skin, ThreadTeam* team) noexcept {
   is_at_once_ = true;
-  begin_next(position, skin);
-  advance_next(position, whole_work());
-  if (stage_ == Stage::kNothing && skin > 0.0 && held_skin_ < 0.0) {
-    begin_next(position, 0.0);
-    advance_next(position, whole_work());
-  }
+  const auto make = [&](double of_skin) {
+    begin_next(position, of_skin, team);
+    advance_next(position, whole_work(), team);
+    if (stage_ != Stage::kNothing || part_count_ == 1) return;
+    begin_next(position, of_skin, nullptr);  // parts had no room
+    advance_next(position, whole_work(), nullptr);
+  };
+  make(skin);
+  if (stage_ == Stage::kNothing && skin > 0.0 && held_skin_ < 0.0) make(0.0);
   may_slice_ = stage_ == Stage::kReady;
   use_next();
   is_at_once_ = false;
 }
 
-void NeighbourList::begin_next(const double* position, double skin) noexcept {
+void NeighbourList::begin_next(const double* position, double skin, ThreadTeam* team) noexcept {
   next_.skin = skin;
   next_.age = 0;
   std::copy_n(position, 4 * member_count(), next_.from.begin());
   grid_.fill(position, count_p_, range_ + skin);
-  std::fill(fill_.begin(), fill_.end(), std::size_t{0});
   std::fill(next_.found_count.begin(), next_.found_count.end(), 0U);
-  stage_ = Stage::kFind;
-  done_ = 0;
-  find_count_ = count_q_ > 0 ? count_q_ : grid_.end_of(grid_.cell_count() - 1);
-  cell_ = 0;
-  found_total_ = 0;
+  part_count_ = team != nullptr && makes_parts_ ? team->member_count() : 1;
+  CORDIS_ASSERT(part_count_ <= parts_.size() && (part_count_ == 1 || count_q_ == 0));
+  if (part_count_ == 1) std::fill_n(fill_.begin(), count_p_, 0U);
+  begin_stage(Stage::kFind, count_q_ > 0 ? count_q_ : grid_.end_of(grid_.cell_count() - 1));
+  for (std::size_t p = 0; p < part_count_; ++p) {
+    Part& part = parts_[p];
+    part.cell = grid_.cell_of_place(part.done);
+    part.found_begin = p * capacity_ / part_count_;
+    part.found_room = (p + 1) * capacity_ / part_count_ - part.found_begin;
+    part.found_total = 0;
+    part.overflowed = false;
+  }
 }
 
-void NeighbourList::advance_next(const double* position, std::size_t work) noexcept {
+void NeighbourList::begin_stage(Stage stage, std::size_t count) noexcept {
+  stage_ = stage;
+  for (std::size_t p = 0; p < part_count_; ++p) {
+    parts_[p].done = p * count / part_count_;
+    parts_[p].last = (p + 1) * count / part_count_;
+  }
+}
+
+bool NeighbourList::is_stage_done() const noexcept {
+  return std::all_of(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(part_count_),
+                     [](const Part& part) { return part.done == part.last; });
+}
+
+template <class Make>
+void NeighbourList::make_parts(ThreadTeam* team, const Make& make) noexcept {
+  if (team == nullptr || part_count_ == 1) {
+    for (std::size_t p = 0; p < part_count_; ++p) make(p);
+    return;
+  }
+  team->run([&](std::size_t member) noexcept {
+    for (std::size_t p = member; p < part_count_; p += team->member_count()) make(p);
+  });
+}
+
+template <class Some>
+std::size_t NeighbourList::advance_parts(ThreadTeam* team, std::size_t members,
+                                         const Some& some) noexcept {
+  const std::size_t of_each = (members + part_count_ - 1) / part_count_;
+  const auto done = [this] {
+    std::size_t sum = 0;
+    for (std::size_t p = 0; p < part_count_; ++p) sum += parts_[p].done;
+    return sum;
+  };
+  const std::size_t before = done();
+  make_parts(team, [&](std::size_t p) noexcept { some(p, of_each); });
+  return done() - before;
+}
+
+void NeighbourList::advance_next(const double* position, std::size_t work,
+                                 ThreadTeam* team) noexcept {
   std::size_t done = 0;
   const auto members = [&](std::size_t each) {
     return work > done ? (work - done + each - 1) / each : 0;
   };
   if (stage_ == Stage::kFind) {
-    done += kFindWork * find_some(members(kFindWork));
-    if (done_ == find_count_) end_find(position);
+    done += kFindWork *
+            advance_parts(team, members(kFindWork),
+                          [this](std::size_t part, std::size_t count) { find_some(part, count); });
+    if (is_stage_done()) end_find(position, team);
   }
-  if (stage_ == Stage::kKeep) done += kKeepWork * keep_some(members(kKeepWork));
-  if (stage_ == Stage::kSort) sort_some(members(kSortWork));
+  if (stage_ == Stage::kKeep) {
+    done += kKeepWork *
+            advance_parts(team, members(kKeepWork),
+                          [this](std::size_t part, std::size_t count) { keep_some(part, count); });
+    if (is_stage_done()) {
+      end_count(team);
+      begin_stage(Stage::kSort, later_count());
+    }
+  }
+  if (stage_ == Stage::kSort) {
+    advance_parts(team, members(kSortWork),
+                  [this](std::size_t part, std::size_t count) { sort_some(part, count); });
+    if (is_stage_done()) stage_ = Stage::kReady;
+  }
 }
 
 void NeighbourList::use_next() noexcept {
@@ -240,64 +333,91 @@ std::size_t NeighbourList::find_before(std::size_t b, const double* position, do
   return find_around(grid_.around(point, std::min(last, b)), query, found);
 }
 
-std::size_t NeighbourList::find_some(std::size_t members) noexcept {
-  return count_q_ > 0 ? find_some_between(members) : find_some_within(members);
+void NeighbourList::find_some(std::size_t part, std::size_t members) noexcept {
+  if (count_q_ > 0) {
+    find_some_between(parts_[part], members);
+  } else {
+    find_some_within(parts_[part], members);
+  }
 }
 
-std::size_t NeighbourList::find_some_between(std::size_t members) noexcept {
-  const std::size_t first = done_;
-  const std::size_t end = std::min(done_ + members, find_count_);
-  for (; done_ < end; ++done_) {
-    const std::size_t b = count_p_ + done_;
-    std::uint32_t* found = found_.data() + std::min(found_total_, capacity_);
-    record_found(b, find_before(b, next_.from.data(), reach_square(next_), 0, count_p_, found));
+void NeighbourList::find_some_between(Part& part, std::size_t members) noexcept {
+  const std::size_t end = std::min(part.done + members, part.last);
+  for (; part.done < end; ++part.done) {
+    const std::size_t b = count_p_ + part.done;
+    record_found(
+        part, b,
+        find_before(b, next_.from.data(), reach_square(next_), 0, count_p_, room_in(part)));
   }
-  return end - first;
 }
 
 /// Goes cell by cell, since what is around a cell is the same for all of its members.
-std::size_t NeighbourList::find_some_within(std::size_t members) noexcept {
+void NeighbourList::find_some_within(Part& part, std::size_t members) noexcept {
   const CellTable table = grid_.table();
-  const std::size_t first = done_;
-  const std::size_t end = std::min(done_ + members, find_count_);
+  const std::size_t end = std::min(part.done + members, part.last);
   const double reach = reach_square(next_);
-  while (done_ < end) {
-    while (grid_.end_of(cell_) <= done_) ++cell_;
-    const std::size_t stop = std::min(end, grid_.end_of(cell_));
+  while (part.done < end) {
+    while (grid_.end_of(part.cell) <= part.done) ++part.cell;
+    const std::size_t stop = std::min(end, grid_.end_of(part.cell));
     const CellGrid::NeighbourCells around =
-        grid_.around_cell(cell_, table.member[grid_.end_of(cell_) - 1]);
-    for (; done_ < stop; ++done_) {
-      const NearQuery query{table.x[done_],     table.y[done_], table.z[done_], reach, 0.0,
-                            table.number[done_]};
-      std::uint32_t* found = found_.data() + std::min(found_total_, capacity_);
-      record_found(table.member[done_], find_around(around, query, found));
+        grid_.around_cell(part.cell, table.member[grid_.end_of(part.cell) - 1]);
+    for (; part.done < stop; ++part.done) {
+      if (!has_room_for(part, around)) {
+        part.overflowed = true;
+        part.done = part.last;
+        return;
+      }
+      const std::size_t place = part.done;
+      const NearQuery query{table.x[place],     table.y[place], table.z[place], reach, 0.0,
+                            table.number[place]};
+      record_found(part, table.member[place], find_around(around, query, room_in(part)));
     }
   }
-  return end - first;
 }
 
-void NeighbourList::record_found(std::size_t b, std::size_t count) noexcept {
-  found_begin_[b] = std::min(found_total_, capacity_);
-  if (is_at_once_) count_rows(b, count);
+/// The only part goes on without room, and counts what it finds; one of several stops.
+bool NeighbourList::has_room_for(const Part& part,
+                                 const CellGrid::NeighbourCells& around) const noexcept {
+  if (part_count_ == 1) return true;
+  std::size_t most = kPairBatch;  // that are written beyond the last
+  for (std::size_t r = 0; r < around.count; ++r) most += around.runs[r].end - around.runs[r].begin;
+  return part.found_total + most <= part.found_room;
+}
+
+void NeighbourList::record_found(Part& part, std::size_t b, std::size_t count) noexcept {
+  found_begin_[b] = part.found_begin + std::min(part.found_total, part.found_room);
+  if (counts_while_found()) count_rows(0, b, count);
   next_.found_count[b] = static_cast<std::uint32_t>(count);
-  found_total_ += count;
+  part.found_total += count;
 }
 
-void NeighbourList::count_rows(std::size_t b, std::size_t count) noexcept {
+void NeighbourList::count_rows(std::size_t part, std::size_t b, std::size_t count) noexcept {
   const std::uint32_t* found = found_.data() + found_begin_[b];
-  for (std::size_t i = 0; i < count; ++i) ++fill_[found[i]];
+  std::uint32_t* fill = fill_of(part);
+  for (std::size_t i = 0; i < count; ++i) ++fill[found[i]];
 }
 
-void NeighbourList::end_find(const double* position) noexcept {
-  const bool has_room = found_total_ <= capacity_;
-  may_slice_ = may_slice_ && has_room;
-  done_ = 0;
-  if (is_at_once_) {
-    end_count();
-    stage_ = has_room ? Stage::kSort : Stage::kNothing;
+void NeighbourList::end_find(const double* position, ThreadTeam* team) noexcept {
+  if (counts_while_found()) {
+    const bool has_room = parts_[0].found_total <= capacity_;
+    may_slice_ = may_slice_ && has_room;
+    end_count(team);
+    begin_stage(has_room ? Stage::kSort : Stage::kNothing, later_count());
     return;
   }
-  const double moved = std::sqrt(move_square(next_, position)) * (1.0 + kMargin);
+  bool has_room = true;
+  for (std::size_t p = 0; p < part_count_; ++p)
+    has_room = has_room && !parts_[p].overflowed && parts_[p].found_total <= parts_[p].found_room;
+  if (part_count_ == 1) {
+    may_slice_ = may_slice_ && has_room;
+  } else {
+    makes_parts_ = makes_parts_ && has_room;
+  }
+  if (is_at_once_) {
+    begin_stage(has_room ? Stage::kKeep : Stage::kNothing, later_count());
+    return;
+  }
+  const double moved = std::sqrt(move_square(next_, position, team)) * (1.0 + kMargin);
   if (!has_room || !(2.0 * moved < next_.skin)) {
     stage_ = Stage::kNothing;
     return;
@@ -305,22 +425,62 @@ void NeighbourList::end_find(const double* position) noexcept {
   next_.skin -= 2.0 * moved;
   next_.age = 0;
   std::copy_n(position, 4 * member_count(), next_.from.begin());
-  stage_ = Stage::kKeep;
+  begin_stage(Stage::kKeep, later_count());
 }
 
-void NeighbourList::end_count() noexcept {
+void NeighbourList::end_count(ThreadTeam* team) noexcept {
+  if (part_count_ > 1) {
+    end_count_of_parts(team);
+    return;
+  }
   next_.start[0] = 0;
-  for (std::size_t a = 0; a < count_p_; ++a) next_.start[a + 1] = next_.start[a] + fill_[a];
-  std::copy_n(next_.start.begin(), count_p_, fill_.begin());
+  for (std::size_t a = 0; a < count_p_; ++a) {
+    next_.start[a + 1] = next_.start[a] + fill_[a];
+    fill_[a] = static_cast<std::uint32_t>(next_.start[a]);
+  }
 }
 
-std::size_t NeighbourList::keep_some(std::size_t members) noexcept {
-  const std::size_t first = done_;
-  const std::size_t end = std::min(done_ + members, later_count());
+/// In a row the entries of each part follow those of the part before.
+void NeighbourList::end_count_of_parts(ThreadTeam* team) noexcept {
+  const auto first_of = [this](std::size_t part) { return part * count_p_ / part_count_; };
+  make_parts(team, [&](std::size_t p) noexcept {
+    std::size_t sum = 0;
+    for (std::size_t counted = 0; counted < part_count_; ++counted) {
+      const std::uint32_t* fill = fill_of(counted);
+      for (std::size_t a = first_of(p); a < first_of(p + 1); ++a) sum += fill[a];
+    }
+    parts_[p].entries = sum;
+  });
+  std::size_t entries = 0;
+  for (std::size_t p = 0; p < part_count_; ++p) {
+    const std::size_t before = entries;
+    entries += parts_[p].entries;
+    parts_[p].entries = before;
+  }
+  next_.start[count_p_] = entries;
+  make_parts(team, [&](std::size_t p) noexcept {
+    std::size_t next = parts_[p].entries;
+    for (std::size_t a = first_of(p); a < first_of(p + 1); ++a) {
+      next_.start[a] = next;
+      for (std::size_t counted = 0; counted < part_count_; ++counted) {
+        std::uint32_t& fill = fill_of(counted)[a];
+        const std::uint32_t count = fill;
+        fill = static_cast<std::uint32_t>(next);
+        next += count;
+      }
+    }
+  });
+}
+
+void NeighbourList::keep_some(std::size_t part, std::size_t members) noexcept {
+  std::size_t& done = parts_[part].done;
+  const std::size_t end = std::min(done + members, parts_[part].last);
+  if (part_count_ > 1 && done == part * later_count() / part_count_)
+    std::fill_n(fill_of(part), count_p_, 0U);
   const double reach = reach_square(next_);
   const double* position = next_.from.data();
-  for (; done_ < end; ++done_) {
-    const std::size_t b = count_q_ > 0 ? count_p_ + done_ : done_;
+  for (; done < end; ++done) {
+    const std::size_t b = count_q_ > 0 ? count_p_ + done : done;
     std::uint32_t* found = found_.data() + found_begin_[b];
     const double* centre = position + 4 * b;
     std::uint32_t kept = 0;
@@ -333,30 +493,23 @@ std::size_t NeighbourList::keep_some(std::size_t members) noexcept {
       kept += x * x + y * y + z * z < reach ? 1U : 0U;
     }
     next_.found_count[b] = kept;
-    count_rows(b, kept);
+    count_rows(part, b, kept);
   }
-  if (done_ == later_count()) {
-    end_count();
-    stage_ = Stage::kSort;
-    done_ = 0;
-  }
-  return end - first;
 }
 
 /// Later members are taken in ascending order, so that each row comes out in that order.
-std::size_t NeighbourList::sort_some(std::size_t members) noexcept {
-  const std::size_t first = done_;
-  const std::size_t end = std::min(done_ + members, later_count());
-  for (; done_ < end; ++done_) {
-    const std::size_t b = count_q_ > 0 ? count_p_ + done_ : done_;
+void NeighbourList::sort_some(std::size_t part, std::size_t members) noexcept {
+  std::size_t& done = parts_[part].done;
+  const std::size_t end = std::min(done + members, parts_[part].last);
+  std::uint32_t* fill = fill_of(part);
+  for (; done < end; ++done) {
+    const std::size_t b = count_q_ > 0 ? count_p_ + done : done;
     const auto column = static_cast<std::uint32_t>(4 * b);
     const std::uint32_t* found = found_.data() + found_begin_[b];
     for (std::uint32_t i = 0; i < next_.found_count[b]; ++i) {
-      next_.neighbour[fill_[*found++]++] = column;
+      next_.neighbour[fill[*found++]++] = column;
     }
   }
-  if (done_ == later_count()) stage_ = Stage::kReady;
-  return end - first;
 }
 
 bool NeighbourList::wants_room() const noexcept {
@@ -378,6 +531,7 @@ void NeighbourList::make_room(std::size_t capacity) noexcept {
   }
   capacity_ = capacity;
   may_slice_ = true;
+  makes_parts_ = true;
   if (stage_ == Stage::kFind) stage_ = Stage::kNothing;  // what had no room is lost
 }
 
@@ -395,7 +549,7 @@ NeighbourRows NeighbourList::part_from(std::size_t first, const double* position
   const std::vector<std::size_t>& start = used_.start;
   std::size_t last = first;
   while (last < count_p_ && start[last + 1] - start[first] <= capacity_) {
-    fill_[last] = start[last] - start[first];
+    fill_[last] = static_cast<std::uint32_t>(start[last] - start[first]);
     ++last;
   }
   if (first == last) return {last, last, start.data(), used_.neighbour.data(), 0};

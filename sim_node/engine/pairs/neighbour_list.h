@@ -1,12 +1,14 @@
 // sim_node/engine/pairs/neighbour_list.h -- which members of a set may be in range of which.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/pairs/cell_grid.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 
@@ -29,6 +31,8 @@ namespace cordis::engine {
 /// longer than the list needs; when all are found, members have moved by up to d, and pairs are
 /// kept that are nearer than range + s - 2 d now: whoever is was nearer than range + s before.
 ///
+/// A team makes a slice in parts. The list is the same for every number of them.
+///
 /// The list holds `capacity` entries. When they do not suffice, it first does without
 /// skin, and then is made part by part in each step, as many rows at a time as there is room for:
 /// slow, but with the same pairs in the same order, until make_room() is called.
@@ -50,7 +54,13 @@ class NeighbourList {
   /// Real time: O(members), and a slice of O(members + entries) while the next list is made, all of
   /// it when members move too fast for slices; no allocation. Positions that are not finite are in
   /// no pair.
-  void refresh(const double* position) noexcept;
+  /// @param team  shares it; null: none. Precondition: there is room for its members, and Q is 0.
+  void refresh(const double* position, ThreadTeam* team = nullptr) noexcept;
+
+  /// Makes room for a team of so many members. Allocates.
+  void make_room_for_team(std::size_t member_count);
+  /// Exchanges that room with a list of as many members. Real time: O(1).
+  void swap_room_for_team(NeighbourList& other) noexcept;
 
   /// The first part of the rows, with `first < last`, or none.
   NeighbourRows first_rows(const double* position) noexcept;
@@ -94,12 +104,24 @@ class NeighbourList {
   };
   /// What of the next list is made next.
   enum class Stage { kNothing, kFind, kKeep, kSort, kReady };
+  /// What one thread makes of a stage.
+  struct alignas(64) Part {
+    std::size_t done = 0;         // members of the stage, or places in the grid
+    std::size_t last = 0;         // one past the last of them
+    std::size_t cell = 0;         // of the grid, that holds the next of these places
+    std::size_t found_begin = 0;  // in found_
+    std::size_t found_room = 0;   // entries from there on
+    std::size_t found_total = 0;
+    bool overflowed = false;   // there was no room, and the part is not complete
+    std::size_t entries = 0;   // of its rows, for end_count()
+    double move_square = 0.0;  // the largest of its members [m^2]
+  };
 
   std::size_t member_count() const noexcept { return count_p_ + count_q_; }
   double reach_square(const Listing& listing) const noexcept;
   /// How far a member may go before a list is of no use [m^2].
   static double free_way_square(const Listing& listing) noexcept;
-  double move_square(const Listing& listing, const double* position) const noexcept;
+  double move_square(const Listing& listing, const double* position, ThreadTeam* team) noexcept;
   double root_of_least_time(double speed, double part) const noexcept;
   /// The skin of the list that follows the one in use [m].
   /// @param speed  of the fastest member [m / step]
@@ -112,27 +134,43 @@ class NeighbourList {
   /// What it takes to make a list, in steps of sort_some().
   std::size_t whole_work() const noexcept;
 
-  void build(const double* position, double skin) noexcept;
-  void begin_next(const double* position, double skin) noexcept;
-  void advance_next(const double* position, std::size_t work) noexcept;
+  void build(const double* position, double skin, ThreadTeam* team) noexcept;
+  void begin_next(const double* position, double skin, ThreadTeam* team) noexcept;
+  void advance_next(const double* position, std::size_t work, ThreadTeam* team) noexcept;
   void use_next() noexcept;
-  void end_find(const double* position) noexcept;
-  void count_rows(std::size_t b, std::size_t count) noexcept;
-  void end_count() noexcept;
+  /// Calls make(part) for each part of the next list.
+  template <class Make>
+  void make_parts(ThreadTeam* team, const Make& make) noexcept;
+  /// Calls some(part, members) for each part. @return how many members that took
+  template <class Some>
+  std::size_t advance_parts(ThreadTeam* team, std::size_t members, const Some& some) noexcept;
+  /// Divides the members of a stage into parts.
+  void begin_stage(Stage stage, std::size_t count) noexcept;
+  bool is_stage_done() const noexcept;
+  void end_find(const double* position, ThreadTeam* team) noexcept;
+  std::uint32_t* fill_of(std::size_t part) noexcept { return fill_.data() + part * count_p_; }
+  void count_rows(std::size_t part, std::size_t b, std::size_t count) noexcept;
+  void end_count(ThreadTeam* team) noexcept;
+  void end_count_of_parts(ThreadTeam* team) noexcept;
   /// Finds the earlier members of some later ones, and writes them down as far as there is room.
-  /// @return how many these were
-  std::size_t find_some(std::size_t members) noexcept;
-  std::size_t find_some_within(std::size_t members) noexcept;
-  std::size_t find_some_between(std::size_t members) noexcept;
-  void record_found(std::size_t b, std::size_t count) noexcept;
+  void find_some(std::size_t part, std::size_t members) noexcept;
+  void find_some_within(Part& part, std::size_t members) noexcept;
+  void find_some_between(Part& part, std::size_t members) noexcept;
+  bool has_room_for(const Part& part, const CellGrid::NeighbourCells& around) const noexcept;
+  /// True if rows are counted while pairs are found, since all of them are kept.
+  bool counts_while_found() const noexcept { return is_at_once_ && part_count_ == 1; }
+  std::uint32_t* room_in(const Part& part) noexcept {
+    return found_.data() + part.found_begin + std::min(part.found_total, part.found_room);
+  }
+  void record_found(Part& part, std::size_t b, std::size_t count) noexcept;
   /// Writes down the members around that a query finds. @return how many
   std::size_t find_around(const CellGrid::NeighbourCells& around, const NearQuery& query,
                           std::uint32_t* found) const noexcept;
   std::size_t find_before(std::size_t b, const double* position, double reach_square,
                           std::size_t first, std::size_t last, std::uint32_t* found) const noexcept;
   /// Keeps those found that are near enough now, and counts them by rows.
-  std::size_t keep_some(std::size_t members) noexcept;
-  std::size_t sort_some(std::size_t members) noexcept;
+  void keep_some(std::size_t part, std::size_t members) noexcept;
+  void sort_some(std::size_t part, std::size_t members) noexcept;
   NeighbourRows part_from(std::size_t first, const double* position) noexcept;
 
   std::size_t count_p_;
@@ -145,18 +183,17 @@ class NeighbourList {
   CellGrid grid_;
   Listing used_;
   Listing next_;
-  std::vector<std::size_t> fill_;         // of the next list by row: where its next entry goes
+  std::vector<std::uint32_t> fill_;  // of the next list by part and row: where its next entry goes
   std::vector<std::size_t> found_begin_;  // in found_, by later member
   std::vector<std::uint32_t> found_;      // earlier members of each pair, by the later one
   Stage stage_ = Stage::kNothing;
-  std::size_t done_ = 0;        // members of the stage, or places in the grid
-  std::size_t find_count_ = 0;  // of the first stage
-  std::size_t cell_ = 0;        // of the grid, that holds the next of these places
-  std::size_t found_total_ = 0;
-  std::size_t slice_ = 0;    // work a refresh
-  bool may_slice_ = true;    // until a list made in slices finds no room
-  double held_skin_ = -1.0;  // [m]; < 0: none
-  bool is_at_once_ = false;  // the next list is made in one refresh
+  std::vector<Part> parts_;     // room for those of a team
+  std::size_t part_count_ = 1;  // of the next list
+  bool makes_parts_ = true;     // until a part finds no room
+  std::size_t slice_ = 0;       // work a refresh
+  bool may_slice_ = true;       // until a list made in slices finds no room
+  double held_skin_ = -1.0;     // [m]; < 0: none
+  bool is_at_once_ = false;     // the next list is made in one refresh
   bool valid_ = false;
   bool whole_ = true;
   std::size_t build_count_ = 0;

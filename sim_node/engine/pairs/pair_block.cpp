@@ -5,9 +5,9 @@
 
 namespace cordis::engine {
 
-PairBlock::PairBlock(std::size_t member_count)
-    : capacity_(padded(kEnough + member_count, kPairBatch) + kPairBatch),
-      start_(member_count + 1, 0),
+PairBlock::PairBlock(std::size_t pairs_of_row, std::size_t rows)
+    : capacity_(padded(kEnough + pairs_of_row, kPairBatch) + kPairBatch),
+      start_(rows + 1, 0),
       column_a_(capacity_, 0U),
       column_b_(capacity_, 0U),
       values_(kArrayCount * capacity_, 0.0) {}
@@ -19,9 +19,9 @@ void PairBlock::begin(std::size_t first_row) noexcept {
   start_[0] = 0;
 }
 
-void PairBlock::end_row(std::size_t pairs) noexcept {
+void PairBlock::end_row_of(std::size_t member, std::size_t pairs) noexcept {
   std::fill_n(column_a_.begin() + static_cast<std::ptrdiff_t>(count_), pairs,
-              static_cast<std::uint32_t>(4 * last_));
+              static_cast<std::uint32_t>(4 * member));
   count_ += pairs;
   ++last_;
   start_[last_ - first_] = count_;
@@ -34,6 +34,13 @@ void PairBlock::pad(const MemberColumns& members) noexcept {
     column_a_[i] = row.column[i];
     for (double* values : {row.x, row.y, row.z, row.square}) values[i] = 0.0;
     rest_length()[i] = 0.0;
+  }
+}
+
+void PairBlock::redirect(const MemberColumns& members) noexcept {
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (column_b_[i] >= members.end)
+      column_b_[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
   }
 }
 

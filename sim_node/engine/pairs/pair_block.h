@@ -15,7 +15,9 @@ namespace cordis::engine {
 /// with its row would be half empty.
 class PairBlock {
  public:
-  explicit PairBlock(std::size_t member_count);
+  explicit PairBlock(std::size_t member_count) : PairBlock(member_count, member_count) {}
+  /// @param pairs_of_row  candidates for a row there may be at most @param rows  likewise
+  PairBlock(std::size_t pairs_of_row, std::size_t rows);
 
   /// Pairs there may be at most.
   std::size_t capacity() const noexcept { return capacity_; }
@@ -25,8 +27,12 @@ class PairBlock {
   /// Where the pairs of the next row go, as many as there are members.
   PairRow next_row() noexcept { return row_at(count_); }
   /// Closes the current row with `pairs` entries.
-  void end_row(std::size_t pairs) noexcept;
-  bool is_full() const noexcept { return count_ >= kEnough; }
+  void end_row(std::size_t pairs) noexcept { end_row_of(last_, pairs); }
+  /// Likewise; the row is that of any member. Then rows are not numbered in order.
+  void end_row_of(std::size_t member, std::size_t pairs) noexcept;
+  bool is_full() const noexcept { return count_ >= kEnough || last_ - first_ + 1 == start_.size(); }
+  /// Pairs whose columns are `end` or beyond give their force to padding instead.
+  void redirect(const MemberColumns& members) noexcept;
   /// Fills the last batch up. To be called after the last row.
   void pad(const MemberColumns& members) noexcept;
 

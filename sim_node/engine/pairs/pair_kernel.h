@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "sim_node/engine/core/vector_width.h"
 #include "sim_node/engine/description/partner_share.h"
@@ -81,11 +82,28 @@ struct NeighbourRows {
   std::size_t origin = 0;
 };
 
+/// A row of which only some neighbours are looked at: those from neighbour[begin] on.
+struct PartOfRow {
+  std::uint32_t row = 0;
+  std::uint32_t count = 0;
+  std::size_t begin = 0;
+};
+
+/// Parts of rows, ascending.
+struct PartsOfRows {
+  const PartOfRow* parts = nullptr;
+  std::size_t count = 0;
+  const std::uint32_t* neighbour = nullptr;
+};
+
+inline constexpr std::uint32_t kNoColumn = std::numeric_limits<std::uint32_t>::max();
+
 /// The members of a set, 4 x N, columns 32-byte aligned; 8 more columns for padding.
 struct MemberColumns {
   const double* position = nullptr;  // x(n) [m]
   const double* moved = nullptr;     // x(n) - x(n-1) [m]
   std::uint32_t padding = 0;         // where the column of the first member of padding begins
+  std::uint32_t end = kNoColumn;     // columns from here on get no force: padding gets it instead
 };
 
 /// Gathers the pairs of member a and its neighbours, given as columns, that are nearer than the
@@ -142,6 +160,9 @@ using MeasurePairs = void (*)(const MemberColumns& members, const PairRows& rows
 /// Adds factor * (vector from a to b) to member a and takes it from member b, for each pair. Adds
 /// its share to the fourth value of both where the factor is not 0: the partners of a member.
 using SpreadRows = void (*)(const PairRows& rows, const double* factor, double* force) noexcept;
+
+/// Likewise, and gives nothing to member a; rows do not matter.
+using SpreadToLater = SpreadRows;
 
 /// A contact: tension = K e + Z / dt * elongation increment, within min_tension and max_tension.
 struct LinearPair {
@@ -216,6 +237,11 @@ using LennardJonesRows = void (*)(const LennardJonesPair& pair, const MemberColu
                                   const NeighbourRows& rows, const PairRow& row,
                                   double* force) noexcept;
 
+/// Likewise, of parts of rows, and gives nothing to their first members.
+using LennardJonesParts = void (*)(const LennardJonesPair& pair, const MemberColumns& members,
+                                   const PartsOfRows& parts, const PairRow& row,
+                                   double* force) noexcept;
+
 /// The loops of one width.
 struct PairKernel {
   FindNear find_near = nullptr;
@@ -230,6 +256,8 @@ struct PairKernel {
   FrictionPairs friction_pairs = nullptr;
   SpreadVectors spread_vectors = nullptr;
   LennardJonesRows lennard_jones_rows = nullptr;
+  SpreadToLater spread_to_later = nullptr;
+  LennardJonesParts lennard_jones_parts = nullptr;
 };
 
 extern const PairKernel kPairKernelSse2;

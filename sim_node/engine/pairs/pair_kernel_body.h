@@ -522,40 +522,80 @@ void friction_pairs(const FrictionTerms& terms, const MemberColumns& members, co
   }
 }
 
+/// The pairs of a row from MemberColumns::end on give their force to padding. Pairs ascend in a row.
 template <class Lanes>
-void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& members,
-                        const NeighbourRows& rows, const PairRow& all, double* force) noexcept {
+void redirect_row(const MemberColumns& members, std::size_t count, const PairRow& row) noexcept {
+  for (std::size_t i = count; i > 0 && row.column[i - 1] >= members.end; --i)
+    row.column[i - 1] = members.padding + 4 * static_cast<std::uint32_t>((i - 1) % kPairBatch);
+}
+
+/// Finds the forces of the pairs of a row, and spreads them.
+/// @param sum  what member a gets
+template <class Lanes>
+[[gnu::always_inline]] inline void lennard_jones_row(const LennardJonesPair& pair,
+                                                     const PairRow& row, std::size_t count,
+                                                     double* force, RowSum<Lanes>& sum) noexcept {
   using Row = typename Lanes::Row;
-  const PairRow row = all;
   const Row attraction = Lanes::every(pair.attraction);
   const Row repulsion = Lanes::every(pair.repulsion);
   const Row touch_square = Lanes::every(pair.touch_square);
+  for (std::size_t i = 0; i < count; i += kPairBatch) {
+#pragma GCC unroll 4
+    for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+      const std::size_t first = i + part * Lanes::kWidth;
+      const Row square = Lanes::load(row.square + first);
+      const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
+      const auto touching =
+          Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
+      spread<Lanes>(row, first, factor, touching, force, sum, part);
+    }
+  }
+}
+
+template <class Lanes>
+void lennard_jones_rows(const LennardJonesPair& pair, const MemberColumns& members,
+                        const NeighbourRows& rows, const PairRow& all, double* force) noexcept {
+  const PairRow row = all;
   for (std::size_t a = rows.first; a < rows.last; ++a) {
     const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
     const std::size_t count = gather_row<Lanes>(
         members, a, neighbour, rows.start[a + 1] - rows.start[a], pair.range_square, row);
+    redirect_row<Lanes>(members, count, row);
     RowSum<Lanes> sum = no_force<Lanes>();
-    for (std::size_t i = 0; i < count; i += kPairBatch) {
-#pragma GCC unroll 4
-      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-        const std::size_t first = i + part * Lanes::kWidth;
-        const Row square = Lanes::load(row.square + first);
-        const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
-        const auto touching =
-            Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
-        spread<Lanes>(row, first, factor, touching, force, sum, part);
-      }
-    }
+    lennard_jones_row<Lanes>(pair, row, count, force, sum);
     give<Lanes>(sum, force + 4 * a);
   }
 }
 
 template <class Lanes>
+void lennard_jones_parts(const LennardJonesPair& pair, const MemberColumns& members,
+                         const PartsOfRows& parts, const PairRow& all, double* force) noexcept {
+  const PairRow row = all;
+  for (std::size_t i = 0; i < parts.count; ++i) {
+    const PartOfRow part = parts.parts[i];
+    const std::size_t count = gather_row<Lanes>(members, part.row, parts.neighbour + part.begin,
+                                                part.count, pair.range_square, row);
+    RowSum<Lanes> unused = no_force<Lanes>();
+    lennard_jones_row<Lanes>(pair, row, count, force, unused);
+  }
+}
+
+template <class Lanes>
+void spread_to_later(const PairRows& rows, const double* factor, double* force) noexcept {
+  RowSum<Lanes> unused = no_force<Lanes>();
+  for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
+    spread_some<Lanes>(rows, i, Lanes::kWidth, factor, along_pairs<Lanes>(rows.pairs, i, factor),
+                       force, unused, 0);
+  }
+}
+
+template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,      largest_move<Lanes>,   gather_pairs<Lanes>,
-                    gather_plane<Lanes>,   take_members<Lanes>,   give_forces<Lanes>,
-                    measure_pairs<Lanes>,  spread_rows<Lanes>,    linear_pairs<Lanes>,
-                    friction_pairs<Lanes>, spread_vectors<Lanes>, lennard_jones_rows<Lanes>};
+  return PairKernel{find_near<Lanes>,       largest_move<Lanes>,       gather_pairs<Lanes>,
+                    gather_plane<Lanes>,    take_members<Lanes>,       give_forces<Lanes>,
+                    measure_pairs<Lanes>,   spread_rows<Lanes>,        linear_pairs<Lanes>,
+                    friction_pairs<Lanes>,  spread_vectors<Lanes>,     lennard_jones_rows<Lanes>,
+                    spread_to_later<Lanes>, lennard_jones_parts<Lanes>};
 }
 
 }  // namespace cordis::engine

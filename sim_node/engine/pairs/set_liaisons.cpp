@@ -1,6 +1,8 @@
 // sim_node/engine/pairs/set_liaisons.cpp
 #include "sim_node/engine/pairs/set_liaisons.h"
 
+#include <algorithm>
+
 namespace cordis::engine {
 
 SetLiaisons::SetLiaisons(const NetworkDescription& description, const StateTable& table,
@@ -11,10 +13,26 @@ SetLiaisons::SetLiaisons(const NetworkDescription& description, const StateTable
   }
 }
 
-StepEnergy SetLiaisons::add_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+StepEnergy SetLiaisons::add_forces(const PairStep& step, const ForceColumns& columns,
+                                   ThreadTeam* team) noexcept {
   StepEnergy energy;
-  for (SetPairs& set : sets_) energy += set.add_forces(step, columns);
+  for (SetPairs& set : sets_) energy += set.add_forces(step, columns, team);
   return energy;
+}
+
+std::size_t SetLiaisons::part_count() const noexcept {
+  std::size_t parts = 1;
+  for (const SetPairs& set : sets_) parts = std::max(parts, set.part_count());
+  return parts;
+}
+
+void SetLiaisons::expect_team(std::size_t member_count) noexcept {
+  for (SetPairs& set : sets_) set.expect_team(member_count);
+}
+
+void SetLiaisons::swap_team_room(SetLiaisons& other) noexcept {
+  for (std::size_t s = 0; s < std::min(sets_.size(), other.sets_.size()); ++s)
+    sets_[s].swap_team_room(other.sets_[s]);
 }
 
 StepEnergy SetLiaisons::take_positions(const ForceColumns& columns) noexcept {

@@ -27,7 +27,8 @@ class SetLiaisons {
   }
 
   /// As those of SetPairs, for all sets:
-  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  StepEnergy add_forces(const PairStep& step, const ForceColumns& columns,
+                        ThreadTeam* team) noexcept;
   [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
   bool refresh() noexcept;
   [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
@@ -35,6 +36,9 @@ class SetLiaisons {
   void mark_neighbours(const WakePropagation& pass, const std::vector<bool>& never_rests,
                        MatRoles& roles) noexcept;
   void choose_active(const std::vector<bool>& never_rests, MatRoles& roles) noexcept;
+  std::size_t part_count() const noexcept;  ///< the most of any set
+  void expect_team(std::size_t member_count) noexcept;
+  void swap_team_room(SetLiaisons& other) noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
   Vec3 contact_force(std::uint32_t contact) const noexcept;

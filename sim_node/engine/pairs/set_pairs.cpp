@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <span>
 #include <utility>
 
 #include "node/assert.h"
@@ -71,6 +73,17 @@ StepEnergy energy_of(const MemberWorks& works) noexcept {
   return {-0.5 * total(works.all) - dissipated, dissipated, 0.0, 0.0};
 }
 
+/// Members whose works are summed together, those of a large set in many chunks: as many as their number
+/// asks for, whatever the number of threads.
+constexpr std::size_t kMinChunk = 32;
+constexpr std::size_t kChunks = 1024;
+/// Columns of padding for the threads of a team.
+constexpr std::size_t kMaxTeam = 256;
+
+std::size_t chunk_of(std::size_t member_count) {
+  return padded(std::max(kMinChunk, member_count / kChunks), kPairBatch);
+}
+
 constexpr double kNoRange = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -125,6 +138,16 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
   ahead_.resize(position_.size(), 0.0);
   force_.resize(position_.size(), 0.0);
   viscous_.resize(position_.size(), 0.0);
+  if (surfaces_.empty() && column_.size() >= RowShares::kMinMembers) {
+    chunk_ = chunk_of(column_.size());
+    works_.resize((column_.size() + chunk_ - 1) / chunk_);
+    if (set.set_q.empty()) {
+      shares_ = RowShares(column_.size(), chunk_);
+      const std::size_t with_team = position_.size() + 4 * kPairBatch * kMaxTeam;
+      for (AlignedVector<double>* values : {&position_, &moved_, &force_, &viscous_})
+        values->resize(with_team, 0.0);
+    }
+  }
   if (description.freeze_tolerance > 0.0) {
     active_ = ActivePairs(column_.size(), set.set_p.size(),
                           surfaces_.empty() ? neighbours_.capacity() : surfaces_.capacity());
@@ -161,32 +184,90 @@ void SetPairs::adopt(const StateTable& table) {
       (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 && !friction_.acts() &&
        is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
+  is_sharable_ = is_sharable(table);
+}
+
+bool SetPairs::is_sharable(const StateTable& table) const noexcept {
+  const bool asks_for_masses = path_ == Path::kAnyStateMachine &&
+                               (table.needs(Quantity::kMassA) || table.needs(Quantity::kMassB));
+  return shares_.exist() && !state_machines_.has_states() && !friction_.acts() &&
+         contacts_.empty() && !asks_for_masses;
+}
+
+std::size_t SetPairs::part_count() const noexcept {
+  return is_sharable_ ? std::min(kMaxTeam, works_.size()) : 1;
+}
+
+bool SetPairs::may_share(const ThreadTeam* team) const noexcept {
+  return team != nullptr && team->member_count() > 1 && is_sharable_ && active_.are_all() &&
+         team->member_count() <= shares_.room();
+}
+
+void SetPairs::swap_team_room(SetPairs& other) noexcept {
+  if (!shares_.exist() || !other.shares_.exist() || column_.size() != other.column_.size()) return;
+  std::swap(shares_, other.shares_);
+  shares_.forget();
+  other.shares_.forget();
+  neighbours_.swap_room_for_team(other.neighbours_);
+}
+
+/// A thread has padding of its own, and gives forces to its members alone.
+MemberColumns SetPairs::members_of(const RowShares::Share& share,
+                                   std::size_t thread) const noexcept {
+  const std::size_t columns = padded(column_.size(), kPairBatch) + kPairBatch * (1 + thread);
+  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * columns),
+          static_cast<std::uint32_t>(4 * share.last)};
+}
+
+/// Calls visit(chunk) for each chunk of members, and sums their works in that order.
+template <class Visit>
+void SetPairs::visit_chunks(ThreadTeam* team, Visit visit) noexcept {
+  if (!may_share(team)) {
+    for (std::size_t chunk = 0; chunk < works_.size(); ++chunk) visit(chunk);
+    return;
+  }
+  team->run([&](std::size_t member) noexcept {
+    const ThreadTeam::Share share = team->share(member, works_.size());
+    for (std::size_t chunk = share.first; chunk < share.last; ++chunk) visit(chunk);
+  });
+}
+
+StepEnergy SetPairs::sum_of_works() const noexcept {
+  StepEnergy sum;
+  for (const StepEnergy& work : works_) sum += work;
+  return sum;
 }
 
 MemberColumns SetPairs::members() const noexcept {
   return {position_.data(), moved_.data(),
-          static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch))};
+          static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch)), kNoColumn};
 }
 
 PairRest SetPairs::rest() const noexcept {
   return {rest_length_, radius_.empty() ? nullptr : radius_.data()};
 }
 
-StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns) noexcept {
-  StepEnergy energy = take_positions(columns);
-  refresh();
-  energy += add_pair_forces(step, columns);
+StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns,
+                                ThreadTeam* team) noexcept {
+  StepEnergy energy = take_positions(columns, team);
+  refresh(team);
+  energy += add_pair_forces(step, columns, team);
   return energy;
 }
 
-bool SetPairs::refresh() noexcept {
+bool SetPairs::refresh(ThreadTeam* team) noexcept {
   if (!surfaces_.empty()) return std::exchange(surfaces_changed_, false);
-  neighbours_.refresh(position_.data());
+  neighbours_.refresh(position_.data(), may_share(team) ? team : nullptr);
   const std::size_t builds_before = std::exchange(known_builds_, neighbours_.build_count());
   return known_builds_ != builds_before;
 }
 
-StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns) noexcept {
+StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns,
+                                     ThreadTeam* team) noexcept {
+  if (may_share(team) && neighbours_.is_whole() &&
+      shares_.divide(neighbours_.first_rows(position_.data()), neighbours_.build_count(), *team)) {
+    return add_shared_forces(step, columns, *team);
+  }
   clear_forces();
   contacts_.begin_step();
   state_machines_.begin_step(step);
@@ -194,11 +275,11 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   if (!active_.are_all()) {
     step_active_rows(step);
   } else if (!surfaces_.empty()) {
-    step_rows(step, surfaces_.rows());
+    step_rows(step, surfaces_.rows(), members(), block_);
   } else {
     for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
          rows = neighbours_.rows_after(rows, position_.data())) {
-      step_rows(step, rows);
+      step_rows(step, rows, members(), block_);
     }
   }
   count_partners();
@@ -212,11 +293,72 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   return energy;
 }
 
+StepEnergy SetPairs::add_shared_forces(const PairStep& step, const ForceColumns& columns,
+                                       ThreadTeam& team) noexcept {
+  state_machines_.begin_step(step);
+  team.run([&](std::size_t thread) noexcept {
+    RowShares::Share& share = shares_.share(thread);
+    const MemberColumns members = members_of(share, thread);
+    const auto clear = [](AlignedVector<double>& values, std::size_t first, std::size_t last) {
+      std::fill(values.data() + first, values.data() + last, 0.0);
+    };
+    for (AlignedVector<double>* force : {&force_, &viscous_}) {
+      if (force == &viscous_ && !has_viscous_) continue;
+      clear(*force, 4 * share.first, 4 * share.last);
+      clear(*force, members.padding, members.padding + 4 * kPairBatch);
+    }
+    step_share(step, members, share);
+    share.largest_partners = largest_among(share.first, share.last);
+    for (std::size_t m = share.first; m < share.last; m += chunk_)
+      give_forces_of_chunk(m / chunk_, columns);
+  });
+  for (std::size_t thread = 0; thread < team.member_count(); ++thread) {
+    largest_partners_.of_p =
+        std::max(largest_partners_.of_p, shares_.share(thread).largest_partners);
+  }
+  return sum_of_works();
+}
+
+/// First what earlier members give to those of the share, then the rows of these.
+void SetPairs::step_share(const PairStep& step, const MemberColumns& members,
+                          RowShares::Share& share) noexcept {
+  NeighbourRows rows = neighbours_.first_rows(position_.data());
+  rows.first = share.first;
+  rows.last = share.last;
+  if (path_ == Path::kLennardJones) {
+    share.block.begin(0);
+    kernel_.lennard_jones_parts(lennard_jones_, members,
+                                {share.earlier.data(), share.earlier.size(), rows.neighbour},
+                                share.block.next_row(), force_.data());
+  } else {
+    step_earlier(step, members, share);
+  }
+  step_rows(step, rows, members, share.block);
+}
+
+void SetPairs::step_earlier(const PairStep& step, const MemberColumns& members,
+                            RowShares::Share& share) noexcept {
+  const std::uint32_t* neighbour = neighbours_.first_rows(position_.data()).neighbour;
+  PairBlock& block = share.block;
+  for (std::size_t i = 0; i < share.earlier.size();) {
+    block.begin(0);
+    for (; i < share.earlier.size() && !block.is_full(); ++i) {
+      const PartOfRow& part = share.earlier[i];
+      block.end_row_of(part.row,
+                       gather_within(range_, part.row, neighbour + part.begin, part.count, block));
+    }
+    const PairRows rows = measure(members, block);
+    find_factors(step, members, nullptr, block);
+    kernel_.spread_to_later(rows, block.factor(), force_.data());
+    if (has_viscous_) kernel_.spread_to_later(rows, block.viscous_factor(), viscous_.data());
+  }
+}
+
 void SetPairs::step_active_rows(const PairStep& step) noexcept {
   std::size_t next = 0;
   for (const NeighbourRows& rows : active_.rows()) {
     state_machines_.keep_rows(step, next, rows.first);
-    step_rows(step, rows);
+    step_rows(step, rows, members(), block_);
     next = rows.last;
   }
   state_machines_.keep_rows(step, next, active_.row_count());
@@ -284,19 +426,20 @@ MemberValues SetPairs::values_from(std::size_t member) noexcept {
   return {from(position_), from(moved_), from(force_), has_viscous_ ? from(viscous_) : nullptr};
 }
 
-void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows) noexcept {
+void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows,
+                         const MemberColumns& members, PairBlock& block) noexcept {
   if (path_ == Path::kLennardJones) {
-    block_.begin(rows.first);
-    kernel_.lennard_jones_rows(lennard_jones_, members(), rows, block_.next_row(), force_.data());
+    block.begin(rows.first);
+    kernel_.lennard_jones_rows(lennard_jones_, members, rows, block.next_row(), force_.data());
     if (!contacts_.empty() && step.sums_contacts) add_lennard_jones_contacts(rows);
     return;
   }
   for (std::size_t a = rows.first; a < rows.last;) {
-    block_.begin(a);
-    for (; a < rows.last && !block_.is_full(); ++a) {
-      block_.end_row(gather(step, rows, a));
+    block.begin(a);
+    for (; a < rows.last && !block.is_full(); ++a) {
+      block.end_row(gather(step, rows, a, block));
     }
-    step_block(step);
+    step_block(step, members, block);
   }
 }
 
@@ -321,24 +464,25 @@ void SetPairs::add_lennard_jones_contacts(const NeighbourRows& rows) noexcept {
 
 /// Gathers the pairs of a member that are in range, and those bound beyond it, into the next row of
 /// the block.
-std::size_t SetPairs::gather(const PairStep& step, const NeighbourRows& rows,
-                             std::size_t a) noexcept {
-  const std::size_t near = gather_near(rows, a);
+std::size_t SetPairs::gather(const PairStep& step, const NeighbourRows& rows, std::size_t a,
+                             PairBlock& block) noexcept {
+  const std::size_t near = gather_near(rows, a, block);
   const std::span<const std::uint32_t> all =
-      state_machines_.with_bound(step, a, near, block_.next_row());
+      state_machines_.with_bound(step, a, near, block.next_row());
   if (all.empty()) return near;
-  return gather_within(kNoRange, a, all.data(), all.size());
+  return gather_within(kNoRange, a, all.data(), all.size(), block);
 }
 
-std::size_t SetPairs::gather_near(const NeighbourRows& rows, std::size_t a) noexcept {
+std::size_t SetPairs::gather_near(const NeighbourRows& rows, std::size_t a,
+                                  PairBlock& block) noexcept {
   return gather_within(range_, a, rows.neighbour + (rows.start[a] - rows.origin),
-                       rows.start[a + 1] - rows.start[a]);
+                       rows.start[a + 1] - rows.start[a], block);
 }
 
 /// The pairs of a surface are measured too.
 std::size_t SetPairs::gather_within(double range, std::size_t a, const std::uint32_t* neighbour,
-                                    std::size_t count) noexcept {
-  const PairRow row = block_.next_row();
+                                    std::size_t count, PairBlock& block) noexcept {
+  const PairRow row = block.next_row();
   if (surfaces_.empty())
     return kernel_.gather_pairs(members(), a, neighbour, count, range * range, row);
   const Surface& shape = surfaces_.shape(a);
@@ -385,10 +529,10 @@ void SetPairs::pad_at_surfaces() noexcept {
 }
 
 /// Finds the rest lengths that new pairs have.
-void SetPairs::find_rest_lengths() noexcept {
-  const PairRows rows = block_.rows();
+void SetPairs::find_rest_lengths(PairBlock& block) const noexcept {
+  const PairRows rows = block.rows();
   const PairRest rest_of = rest();
-  double* rest_length = block_.rest_length();
+  double* rest_length = block.rest_length();
   if (rest_of.radius == nullptr) {
     std::fill_n(rest_length, rows.count, rest_of.fixed);
     return;
@@ -398,35 +542,49 @@ void SetPairs::find_rest_lengths() noexcept {
   }
 }
 
-void SetPairs::step_block(const PairStep& step) noexcept {
-  block_.pad(members());
-  find_rest_lengths();
-  PairRows rows = block_.rows();
+/// Measures the pairs of a block.
+PairRows SetPairs::measure(const MemberColumns& members, PairBlock& block) noexcept {
+  block.pad(members);
+  find_rest_lengths(block);
+  PairRows rows = block.rows();
   rows.share = share_;
   if (surfaces_.empty()) {
-    kernel_.measure_pairs(members(), rows);
+    kernel_.measure_pairs(members, rows);
   } else {
     pad_at_surfaces();
   }
-  const bool rubs = friction_.acts() && !step.frozen;
-  const double* const slid = rubs ? friction_.recall(block_) : nullptr;
+  return rows;
+}
+
+/// Finds the tensions of measured pairs.
+/// @param slid  of each pair, see Quantity::kSlid; null without friction [m]
+void SetPairs::find_factors(const PairStep& step, const MemberColumns& members, const double* slid,
+                            PairBlock& block) noexcept {
   if (path_ == Path::kLinear) {
-    kernel_.linear_pairs(linear_, rows.pairs, rows.count, block_.rest_length(), block_.factor(),
-                         block_.viscous_factor());
+    kernel_.linear_pairs(linear_, block.rows().pairs, block.count(), block.rest_length(),
+                         block.factor(), block.viscous_factor());
   } else {
-    state_machines_.step(step, members(), slid, range_ * range_, block_);
+    state_machines_.step(step, members, slid, range_ * range_, block);
   }
+}
+
+void SetPairs::step_block(const PairStep& step, const MemberColumns& members,
+                          PairBlock& block) noexcept {
+  const PairRows rows = measure(members, block);
+  const bool rubs = friction_.acts() && !step.frozen;
+  find_factors(step, members, rubs ? friction_.recall(block) : nullptr, block);
   if (rubs) {
     const FrictionRows friction =
-        friction_.step(kernel_, members(), state_machines_.states_of_block(), first_state_, block_);
-    kernel_.spread_vectors(rows, block_.factor(), friction, force_.data());
-    kernel_.spread_vectors(rows, block_.viscous_factor(), friction, viscous_.data());
-    contacts_.add(rows, block_.factor(), &friction);
+        friction_.step(kernel_, members, state_machines_.states_of_block(), first_state_, block);
+    kernel_.spread_vectors(rows, block.factor(), friction, force_.data());
+    kernel_.spread_vectors(rows, block.viscous_factor(), friction, viscous_.data());
+    contacts_.add(rows, block.factor(), &friction);
     return;
   }
-  if (step.sums_contacts) contacts_.add(rows, block_.factor());
-  kernel_.spread_rows(rows, block_.factor(), force_.data());
-  if (has_viscous_) kernel_.spread_rows(rows, block_.viscous_factor(), viscous_.data());
+  if (step.sums_contacts) contacts_.add(rows, block.factor());
+  if (members.end != kNoColumn) block.redirect(members);
+  kernel_.spread_rows(rows, block.factor(), force_.data());
+  if (has_viscous_) kernel_.spread_rows(rows, block.viscous_factor(), viscous_.data());
 }
 
 /// Adds the work of the force on a member to one of several sums: so none waits for the one before.
@@ -437,8 +595,42 @@ inline void SetPairs::add_work(std::size_t member, MemberWorks& sum) const noexc
   if (has_viscous_) sum.viscous[place] += dot(viscous_.data() + 4 * member, moved);
 }
 
+inline void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
+  const double* position = columns.position + column_[m];
+  const double* delayed = columns.delayed + column_[m];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    position_[4 * m + axis] = position[axis];
+    moved_[4 * m + axis] = position[axis] - delayed[axis];
+  }
+}
+
+inline void SetPairs::give_force(std::size_t m, const ForceColumns& columns) const noexcept {
+  double* force = columns.force + column_[m];
+  for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
+}
+
+/// Half of what the force on a member takes over a way.
+inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
+  const double all = -0.5 * dot(force_.data() + 4 * member, moved);
+  if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
+  const double dissipated = -0.5 * dot(viscous_.data() + 4 * member, moved);
+  return {all - dissipated, dissipated, 0.0, 0.0};
+}
+
 /// Gathers the members, and ends the account of the last forces.
-StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
+StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* team) noexcept {
+  if (!works_.empty() && active_.are_all()) {
+    visit_chunks(team, [&](std::size_t chunk) noexcept {
+      StepEnergy work;
+      const std::size_t last = std::min(column_.size(), (chunk + 1) * chunk_);
+      for (std::size_t m = chunk * chunk_; m < last; ++m) {
+        take_position(m, columns);
+        work += work_of(m, moved_.data() + 4 * m);
+      }
+      works_[chunk] = work;
+    });
+    return sum_of_works();
+  }
   if (surfaces_.empty()) {
     StepEnergy work;
     visit_active([&](std::size_t m) {
@@ -463,15 +655,6 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns) noexcept {
   return energy_of(sum);
 }
 
-void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
-  const double* position = columns.position + column_[m];
-  const double* delayed = columns.delayed + column_[m];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    position_[4 * m + axis] = position[axis];
-    moved_[4 * m + axis] = position[axis] - delayed[axis];
-  }
-}
-
 /// Measures the balls that have come too far since they were measured.
 /// @param position   columns of 4 values; member m is at position[column[m]]
 /// @param may_leave  what is too far away is listed no longer, and its forces are forgotten
@@ -493,8 +676,9 @@ void SetPairs::measure_surfaces(const double* position, const std::vector<std::u
 
 void SetPairs::clear_forces() noexcept {
   if (active_.are_all() && surfaces_.empty()) {
-    std::fill(force_.begin(), force_.end(), 0.0);
-    if (has_viscous_) std::fill(viscous_.begin(), viscous_.end(), 0.0);
+    const auto end = static_cast<std::ptrdiff_t>(4 * padded(column_.size(), kPairBatch));
+    std::fill_n(force_.begin(), end, 0.0);
+    if (has_viscous_) std::fill_n(viscous_.begin(), end, 0.0);
     return;
   }
   const auto clear = [this](std::size_t first, std::size_t count) {
@@ -528,16 +712,27 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
   return static_cast<std::uint32_t>(std::ceil(largest));
 }
 
+void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& columns) noexcept {
+  StepEnergy work;
+  const std::size_t last = std::min(column_.size(), (chunk + 1) * chunk_);
+  for (std::size_t m = chunk * chunk_; m < last; ++m) {
+    give_force(m, columns);
+    work += work_of(m, moved_.data() + 4 * m);
+  }
+  works_[chunk] = work;
+}
+
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
-  const auto give_force = [&](std::size_t m) {
-    double* force = columns.force + column_[m];
-    for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
-  };
+  if (!works_.empty() && active_.are_all()) {
+    for (std::size_t chunk = 0; chunk < works_.size(); ++chunk)
+      give_forces_of_chunk(chunk, columns);
+    return sum_of_works();
+  }
   if (!surfaces_.empty()) {
     MemberWorks sum;
     visit_runs(
         [&](std::size_t m) {
-          give_force(m);
+          give_force(m, columns);
           add_work(m, sum);
         },
         [&](std::size_t first, std::size_t count) {
@@ -547,18 +742,10 @@ StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
   }
   StepEnergy work;
   visit_active([&](std::size_t m) {
-    give_force(m);
+    give_force(m, columns);
     work += work_of(m, moved_.data() + 4 * m);
   });
   return work;
-}
-
-/// Half of what the force on a member takes over a way.
-StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
-  const double all = -0.5 * dot(force_.data() + 4 * member, moved);
-  if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
-  const double dissipated = -0.5 * dot(viscous_.data() + 4 * member, moved);
-  return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
 PairsOfSet SetPairs::pairs() noexcept {
@@ -631,7 +818,7 @@ double SetPairs::stored_energy(const StateTable& table) noexcept {
   }
   const auto add_row = [&](const NeighbourRows& rows, std::size_t a) {
     block_.begin(a);
-    const std::size_t count = gather_near(rows, a);
+    const std::size_t count = gather_near(rows, a, block_);
     const PairRow row = block_.next_row();
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t b = row.column[i] / 4;
@@ -686,6 +873,7 @@ std::size_t SetPairs::room_for_friction() const noexcept {
 }
 
 bool SetPairs::wants_room(const double* position) const noexcept {
+  if (lacks_room_for_team()) return true;
   if (neighbours_.wants_room() || lacks_room_for_states() || lacks_room_for_friction()) return true;
   return may_lack_room() && !covers(position);
 }
@@ -699,6 +887,7 @@ bool SetPairs::covers(const double* position) const noexcept {
 }
 
 void SetPairs::make_room(const double* position) noexcept {
+  make_team_room();
   make_list_room();
   if (may_lack_room() && !covers(position)) {
     refresh_at(position);
@@ -711,6 +900,20 @@ void SetPairs::make_room(const double* position) noexcept {
     friction_.make_room(enough(room_for_friction(), friction_.capacity()));
   if (lacks_room_for_states())
     state_machines_.make_room(enough(wanted_room(), state_machines_.states().capacity()));
+}
+
+bool SetPairs::lacks_room_for_team() const noexcept {
+  return part_count() > 1 && team_size_ > 1 && shares_.lacks_room(std::min(team_size_, kMaxTeam));
+}
+
+void SetPairs::make_team_room() noexcept {
+  if (!lacks_room_for_team()) return;
+  const std::size_t team_size = std::min(team_size_, kMaxTeam);
+  try {
+    neighbours_.make_room_for_team(team_size);
+    shares_.make_room(team_size);
+  } catch (const std::bad_alloc&) {  // one thread goes on alone
+  }
 }
 
 void SetPairs::make_list_room() noexcept {
@@ -743,7 +946,9 @@ bool SetPairs::is_overflowed() const noexcept {
 }
 
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
-  for (AlignedVector<double>* values : {&force_, &viscous_, &position_}) archive.reals(*values);
+  const std::size_t value_count = 4 * (padded(column_.size(), kPairBatch) + kPairBatch);
+  for (AlignedVector<double>* values : {&force_, &viscous_, &position_})
+    archive.reals(std::span(*values).first(value_count));
   if (archive.restores()) {
     active_.choose_all();
     has_viscous_ = has_viscous_ || std::any_of(viscous_.begin(), viscous_.end(),

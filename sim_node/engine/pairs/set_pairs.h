@@ -9,6 +9,7 @@
 #include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/description/world_records.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -22,6 +23,7 @@
 #include "sim_node/engine/pairs/pair_friction.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_state_machines.h"
+#include "sim_node/engine/pairs/row_shares.h"
 #include "sim_node/engine/pairs/surface_neighbours.h"
 
 namespace cordis::engine {
@@ -35,7 +37,9 @@ namespace cordis::engine {
 ///
 /// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
 /// in range in the order given, by their place in batches of 8. So the sum is the same bits for
-/// every skin of the neighbour list and every vector width.
+/// every skin of the neighbour list, every vector width and every number of threads. A team shares
+/// sets of RowShares::kMinMembers balls or more, whose pairs have no states and no friction, and for which no
+/// contact force is asked.
 /// [Luc90 III.2.3 a formalism for inter-connection]
 class SetPairs {
  public:
@@ -50,16 +54,26 @@ class SetPairs {
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them: half of the
   /// works of the last forces up to now, and half of those of these from then to now.
   /// Real time: O(members + pairs), no allocation.
-  [[nodiscard]] StepEnergy add_forces(const PairStep& step, const ForceColumns& columns) noexcept;
+  /// @param team  shares it, if there is room for its members; null: none
+  [[nodiscard]] StepEnergy add_forces(const PairStep& step, const ForceColumns& columns,
+                                      ThreadTeam* team = nullptr) noexcept;
 
   /// add_forces() in parts, with a choice of the pairs that are computed between them:
   /// takes the positions of the members and the works of the last forces up to now ...
-  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy take_positions(const ForceColumns& columns,
+                                          ThreadTeam* team = nullptr) noexcept;
   /// ... fits the neighbour list to them; @return whether other pairs may be in range now ...
-  bool refresh() noexcept;
+  bool refresh(ThreadTeam* team = nullptr) noexcept;
   /// ... and adds the forces.
-  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step,
-                                           const ForceColumns& columns) noexcept;
+  [[nodiscard]] StepEnergy add_pair_forces(const PairStep& step, const ForceColumns& columns,
+                                           ThreadTeam* team = nullptr) noexcept;
+
+  /// Into how many parts a team can take it apart at most; 1: more threads gain nothing.
+  std::size_t part_count() const noexcept;
+  /// A team of so many threads will share it. Real time: O(1); make_room() makes the room for them.
+  void expect_team(std::size_t member_count) noexcept { team_size_ = member_count; }
+  /// Exchanges the room for teams with a set as large. Real time: O(1).
+  void swap_team_room(SetPairs& other) noexcept;
 
   /// Passes on between members that are near each other or bound. All are beside all others where
   /// all pairs are computed in every step: because their conditions may come true while they rest,
@@ -134,6 +148,8 @@ class SetPairs {
   /// Precondition: the neighbour list is whole.
   PairsOfSet pairs() noexcept;
   void make_list_room() noexcept;
+  bool lacks_room_for_team() const noexcept;
+  void make_team_room() noexcept;
   bool covers(const double* position) const noexcept;
   void refresh_at(const double* position) noexcept;
   std::size_t wanted_room() const noexcept;
@@ -150,16 +166,32 @@ class SetPairs {
     return friction_.acts() && friction_.capacity() < room_for_friction();
   }
   std::size_t room_for_friction() const noexcept;
+  bool is_sharable(const StateTable& table) const noexcept;
+  bool may_share(const ThreadTeam* team) const noexcept;
+  MemberColumns members_of(const RowShares::Share& share, std::size_t thread) const noexcept;
+  template <class Visit>
+  void visit_chunks(ThreadTeam* team, Visit visit) noexcept;
+  StepEnergy sum_of_works() const noexcept;
+  void give_force(std::size_t member, const ForceColumns& columns) const noexcept;
+  void give_forces_of_chunk(std::size_t chunk, const ForceColumns& columns) noexcept;
+  StepEnergy add_shared_forces(const PairStep& step, const ForceColumns& columns,
+                               ThreadTeam& team) noexcept;
+  void step_share(const PairStep& step, const MemberColumns& members,
+                  RowShares::Share& share) noexcept;
+  void step_earlier(const PairStep& step, const MemberColumns& members,
+                    RowShares::Share& share) noexcept;
   void clear_forces() noexcept;
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) noexcept;
   void count_partners() noexcept;
   std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
-  void step_rows(const PairStep& step, const NeighbourRows& rows) noexcept;
-  std::size_t gather(const PairStep& step, const NeighbourRows& rows, std::size_t a) noexcept;
-  std::size_t gather_near(const NeighbourRows& rows, std::size_t a) noexcept;
+  void step_rows(const PairStep& step, const NeighbourRows& rows, const MemberColumns& members,
+                 PairBlock& block) noexcept;
+  std::size_t gather(const PairStep& step, const NeighbourRows& rows, std::size_t a,
+                     PairBlock& block) noexcept;
+  std::size_t gather_near(const NeighbourRows& rows, std::size_t a, PairBlock& block) noexcept;
   std::size_t gather_within(double range, std::size_t a, const std::uint32_t* neighbour,
-                            std::size_t count) noexcept;
+                            std::size_t count, PairBlock& block) noexcept;
   std::size_t gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
                                 std::size_t candidates) noexcept;
   void take_position(std::size_t member, const ForceColumns& columns) noexcept;
@@ -169,8 +201,11 @@ class SetPairs {
   void pad_at_surfaces() noexcept;
   void add_potential(const StateTable& table, StateIndex state, std::size_t a, std::size_t b,
                      double distance, double rest_length, double& sum) const noexcept;
-  void find_rest_lengths() noexcept;
-  void step_block(const PairStep& step) noexcept;
+  void find_rest_lengths(PairBlock& block) const noexcept;
+  PairRows measure(const MemberColumns& members, PairBlock& block) noexcept;
+  void find_factors(const PairStep& step, const MemberColumns& members, const double* slid,
+                    PairBlock& block) noexcept;
+  void step_block(const PairStep& step, const MemberColumns& members, PairBlock& block) noexcept;
   void add_lennard_jones_contacts(const NeighbourRows& rows) noexcept;
   MemberColumns members() const noexcept;
   PairRest rest() const noexcept;
@@ -209,6 +244,11 @@ class SetPairs {
   bool has_viscous_ = false;
   ActivePairs active_;
   PartnerCount largest_partners_;
+  std::size_t chunk_ = 0;          // members whose works are summed together
+  std::vector<StepEnergy> works_;  // of each chunk; empty: of all at once
+  RowShares shares_;
+  std::size_t team_size_ = 1;  // that is expected
+  bool is_sharable_ = false;
 };
 
 }  // namespace cordis::engine
