@@ -73,7 +73,8 @@ const std::vector<Scene>& scenes() {
       {"string_in_1d", string_in_1d},
       {"links_with_states", [] { return net_of(cordis::bench::kConditions); }},
       {"links_with_expressions", [] { return net_of(cordis::bench::kExpression); }},
-      {"melt", [] { return cordis::bench::melt(5); }}};
+      {"melt", [] { return cordis::bench::melt(5); }},
+      {"large_melt", [] { return cordis::bench::melt(11); }}};
   return all;
 }
 
