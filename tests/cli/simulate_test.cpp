@@ -168,16 +168,35 @@ liaisons: {thread: {kind: spring_damper, stiffness_n_per_m: 1000, viscosity_n_s_
 links: [{liaison: thread, between: [hand, "net[0]"]}]
 )";
 
+/// More than 4,096 balls, which fall upon one another.
+constexpr const char* kGravel = R"(cordis: 1
+name: gravel
+space: 2
+step: {rate_hz: 4000, integrator: cordis}
+world: {gravity_m_per_s2: [0, -9.81]}
+liaisons: {stony: {stiffness_n_per_m: 500, viscosity_n_s_per_m: 0.05, pulls: false, range: rest}}
+matter:
+  gravel:
+    kind: pack
+    fill: 0.5
+    seed: 1
+    region: {from_m: [0, 0], to_m: [0.9, 0.75]}
+    ball: {mass_kg: 0.001, radius_m: 0.005}
+links: [{liaison: stony, within: gravel, name: contact}]
+)";
+
 TEST_F(Simulate, ComesToTheSameStateByAnyNumberOfThreads) {
-  const std::string scene = put("net.yaml", kNet);
-  ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", "1"}), kSuccess) << error_;
-  const std::string state = out_.substr(out_.find("state hash"));
-  EXPECT_THAT(out_, testing::Not(HasSubstr("threads")));
-  for (const std::string threads : {"2", "3", "auto"}) {
-    ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", threads}), kSuccess) << error_;
-    EXPECT_THAT(out_, HasSubstr(state)) << threads;
-    if (threads == "auto") continue;
-    EXPECT_THAT(out_, HasSubstr("by " + threads + " threads"));
+  for (const char* text : {kNet, kGravel}) {
+    const std::string scene = put("large.yaml", text);
+    ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", "1"}), kSuccess) << error_;
+    const std::string state = out_.substr(out_.find("state hash"));
+    EXPECT_THAT(out_, testing::Not(HasSubstr("threads")));
+    for (const std::string threads : {"2", "3", "auto"}) {
+      ASSERT_EQ(run({scene, "--duration", "0.02s", "--threads", threads}), kSuccess) << error_;
+      EXPECT_THAT(out_, HasSubstr(state)) << threads;
+      if (threads == "auto") continue;
+      EXPECT_THAT(out_, HasSubstr("by " + threads + " threads"));
+    }
   }
 }
 

@@ -15,6 +15,7 @@
 #include "sim_node/engine/world.h"
 #include "tests/engine/balls.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -122,11 +123,11 @@ TEST(SharedSets, ComeToTheSameBitsWithEveryNumberOfThreads) {
     const NetworkDescription scene = scene_of(seed);
     World alone = make_world(scene);
     ASSERT_GT(alone.block_count(), 4U);
-    play(alone, 150);
+    play(alone, rounds(150));
     for (const std::size_t threads : kTeams) {
       World shared = make_world(scene);
       share(shared, threads);
-      play(shared, 150);
+      play(shared, rounds(150));
       expect_same(shared, alone, name_of(seed, threads));
     }
   }
@@ -154,8 +155,8 @@ TEST(SharedSets, ComeToTheSameBitsOverThousandsOfSteps) {
   World shared = make_world(pack);
   share(shared, 2);
   for (int round = 0; round < 6; ++round) {
-    play(alone, 400);
-    play(shared, 400);
+    play(alone, rounds(400));
+    play(shared, rounds(400));
     ASSERT_EQ(shared.state_hash(), alone.state_hash()) << "step " << alone.step_count();
   }
   expect_same(shared, alone, "pack");
@@ -168,7 +169,7 @@ TEST(SharedSets, ComeToTheSameBitsWhereListsAreMadeAtOnce) {
     World alone = make_world(scene);
     World shared = make_world(scene);
     share(shared, 3);
-    for (int n = 0; n < 60; ++n) {
+    for (int n = 0; n < rounds(60); ++n) {
       play(alone, 1);
       play(shared, 1);
       ASSERT_EQ(shared.state_hash(), alone.state_hash()) << "seed " << seed << ", step " << n;
@@ -197,8 +198,8 @@ TEST(SharedSets, GoOnFromACopyAndWithOtherThreads) {
     World alone = make_world(scene);
     World shared = make_world(scene);
     share(shared, 3);
-    play(alone, 50);
-    play(shared, 50);
+    play(alone, rounds(50));
+    play(shared, rounds(50));
     std::vector<double> copy;
     shared.copy_state(copy);
     World later = make_world(scene);
@@ -211,9 +212,9 @@ TEST(SharedSets, GoOnFromACopyAndWithOtherThreads) {
     later.swap_teams(restored);
     World* const worlds[] = {&later, &restored, &shared};
     share(shared, 2);
-    play(alone, 50);
+    play(alone, rounds(50));
     for (World* const world : worlds) {
-      play(*world, 50);
+      play(*world, rounds(50));
       expect_same(*world, alone, std::to_string(world->team().member_count()) + " threads");
     }
   }
@@ -225,7 +226,7 @@ TEST(SharedSets, KeepEnergyAndMomentum) {
   World world = make_world(scene);
   share(world, 3);
   const Vec3 before = world.momentum();
-  play(world, 200);
+  play(world, rounds(200));
   const engine::Energy energy = world.energy();
   EXPECT_LT(std::abs(energy.residual()), 1e-11 * energy.largest);
   EXPECT_LT((world.momentum() - before).norm(), 1e-9 * static_cast<double>(scene.mats.size()));
@@ -240,7 +241,7 @@ TEST(SharedSets, AllocateNothingInAStep) {
     std::vector<std::optional<AllocationGuard>> guards(team.member_count());
     std::vector<std::size_t> counts(team.member_count());
     team.run([&](std::size_t member) { guards[member].emplace(); });
-    for (int n = 0; n < 60; ++n) world.step();
+    for (int n = 0; n < rounds(60); ++n) world.step();
     team.run([&](std::size_t member) { counts[member] = guards[member]->count(); });
     EXPECT_EQ(counts, std::vector<std::size_t>(team.member_count(), 0)) << "seed " << seed;
   }

@@ -37,9 +37,11 @@ void PairBlock::pad(const MemberColumns& members) noexcept {
   }
 }
 
+/// The last row may begin in the middle of a batch: so its last lanes lie beyond the padding. They give zeros, but a
+/// zero that is given to a member of another thread can undo what that thread gives to it.
 void PairBlock::redirect(const MemberColumns& members) noexcept {
-  for (std::size_t i = 0; i < count_; ++i) {
-    if (column_b_[i] >= members.end)
+  for (std::size_t i = 0; i < count_ + kPairBatch; ++i) {
+    if (i >= count_ || column_b_[i] >= members.end)
       column_b_[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
   }
 }
