@@ -36,6 +36,8 @@ NetworkDescription undamped(NetworkDescription network) {
   network.kept_awake.clear();
   network.medium_viscosity = 0.0;
   std::erase_if(network.drives, [](const engine::Drive& drive) { return !drive.is_force; });
+  for (const engine::Surface& surface : network.surfaces)
+    network.mats[surface.mat].kind = MatKind::kFixed;
   for (engine::TimeFunction& function : network.time_functions) {
     function = {{}, {0.0}, {value_at(function, 0.0)}, false};  // a table of one value stays at it
   }

@@ -24,34 +24,6 @@ using engine::SurfaceDistance;
 
 constexpr double kBallRadius = 0.05;
 
-/// Random numbers, places and shapes.
-struct Chance {
-  explicit Chance(unsigned seed) : random(seed) {}
-  double operator()(double low, double high) {
-    return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
-  }
-  Vec3 place(double reach, int dimension = 3) {
-    Vec3 place = Vec3::Zero();
-    for (int axis = 0; axis < dimension; ++axis) place[axis] = (*this)(-reach, reach);
-    return place;
-  }
-  Surface shape(int dimension) {
-    const auto kind = random() % (dimension == 1 ? 2 : dimension == 2 ? 4 : 3);
-    if (kind == 3) return segment(place(1.0, 2).normalized(), (*this)(0.05, 0.4));
-    if (kind == 0) return plane(place(1.0, dimension).normalized(), random() % 2 == 0);
-    if (kind == 1) {
-      Vec3 half = Vec3::Constant(kNoEnd);
-      for (int axis = 0; axis < dimension; ++axis) half[axis] = (*this)(0.05, 0.4);
-      return box(half);
-    }
-    if (dimension == 2) return cylinder(Vec3::UnitZ(), (*this)(0.05, 0.4));
-    return cylinder(place(1.0).normalized(), (*this)(0.05, 0.4),
-                    random() % 2 == 0 ? kNoEnd : (*this)(0.05, 0.4));
-  }
-
-  std::mt19937 random;
-};
-
 TEST(Surface, HasTheNormalThatItsDistanceGrowsAlongEverywhere) {
   for (unsigned seed = 1; seed <= 2000; ++seed) {
     Chance chance(seed);

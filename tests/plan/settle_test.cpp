@@ -141,6 +141,31 @@ TEST(Settle, HangsAChainByADrivenForceAsByGravity) {
   }
 }
 
+TEST(Settle, LaysABallOnADrivenSurface) {
+  NetworkDescription network = chain(1, false);
+  network.mats = {{MatKind::kMass, kMass, engine::Vec3(0.0, 0.05, 0.0), engine::Vec3::Zero()},
+                  {MatKind::kPort, 0.0, engine::Vec3::Zero(), engine::Vec3::Zero()}};
+  network.links.clear();
+  network.surfaces = {{engine::SurfaceKind::kPlane, 1, engine::Vec3::UnitY()}};
+  network.time_functions.resize(1);
+  network.drives = {{1, 0, false, engine::Vec3::Zero()}};
+  engine::StateMachine contact;
+  contact.states.resize(1);
+  contact.states[0].stiffness = kStiffness;
+  network.state_machines = {contact};
+  engine::SetLiaison set;
+  set.range = set.rest_length = 0.05;
+  set.set_p = {1};
+  set.set_q = {0};
+  network.sets = {set};
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  EXPECT_LT(rest.force, 1e-9);
+  EXPECT_NEAR(rest.position[0].y(), 0.05 - kMass * kG / kStiffness, 1e-10);
+  EXPECT_EQ(rest.position[1], Vec3(Vec3::Zero()));
+}
+
 TEST(Settle, LeavesWhatIsAtRestWhereItIs) {
   NetworkDescription network = chain(5, false);
   network.gravity = Vec3::Zero();

@@ -11,6 +11,7 @@
 #include "sim_node/plan/rate.h"
 #include "sim_node/plan/reference/reference_integrator.h"
 #include "sim_node/plan/stability/liaison_graph.h"
+#include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/start_tangent.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "tests/engine/programs.h"
@@ -123,6 +124,54 @@ TEST(SurfaceBound, CountsTheSidesOfAPolylineThatABallMayTouchAtOnce) {
   };
   EXPECT_EQ(beside_a_wall(1.99 * kReach), 2.0);
   EXPECT_EQ(beside_a_wall(2.01 * kReach), 1.0);
+}
+
+/// A ball, a floor, and two boxes far from it and from each other.
+NetworkDescription two_boxes_over_a_floor() {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {mass(1.0, Vec3(0.0, 1.0, 0.0))};
+  scene.radius = {kReach};
+  std::vector<std::uint32_t> surfaces = {add_surface(scene, plane(Vec3::UnitY()), Vec3::Zero())};
+  for (const double x : {-5.0, 5.0})
+    surfaces.push_back(add_surface(scene, box(Vec3(1.0, 1.0, kNoEnd)), Vec3(x, 9.0, 0.0)));
+  touch(scene, 1, of_one_state(contact(100.0, 0.0)), kReach, -1.0, surfaces);
+  return scene;
+}
+
+/// @param turn  first number of its matrix
+void drive(NetworkDescription& scene, std::uint32_t surface, std::uint32_t function,
+           double turn = 1.0) {
+  engine::Drive drive{surface, function, false, scene.mats[surface].position};
+  drive.turn[0] = turn;
+  scene.drives.push_back(drive);
+  scene.mats[surface].kind = MatKind::kPort;
+  scene.time_functions.resize(2);
+}
+
+TEST(SurfaceBound, CountsDrivenSurfacesWithAllThatTheyMayComeTo) {
+  const auto most = [](const NetworkDescription& scene) {
+    return plan::partner_bounds(scene, scene.sets[0]).possible.back();
+  };
+  NetworkDescription scene = two_boxes_over_a_floor();
+  EXPECT_EQ(most(scene), 1.0);
+  drive(scene, 2, 0);
+  EXPECT_EQ(most(scene), 2.0) << "it may come to the floor, or to the other box";
+  NetworkDescription together = scene;
+  drive(together, 3, 0);
+  EXPECT_EQ(most(together), 2.0) << "they keep their distance";
+  NetworkDescription apart = scene;
+  drive(apart, 3, 1);
+  EXPECT_EQ(most(apart), 3.0);
+  NetworkDescription across = scene;
+  drive(across, 3, 0, -1.0);
+  EXPECT_EQ(most(across), 3.0);
+  NetworkDescription at_rest = two_boxes_over_a_floor();
+  at_rest.sets[0].set_p = {2, 3};
+  EXPECT_EQ(most(at_rest), 1.0);
+  drive(at_rest, 3, 0);
+  EXPECT_EQ(most(at_rest), 2.0);
 }
 
 TEST(SurfaceBound, IsNeverBelowTheTrueNumberOfSegmentsAtAnyPlace) {

@@ -125,7 +125,13 @@ void check_surface(const NetworkDescription& description, const Surface& surface
                    const std::string& name) {
   constexpr double kRounding = 1e-9;
   require(surface.mat < description.mats.size(), name + ": its MAT", "one of the network");
-  require(description.mats[surface.mat].kind == MatKind::kFixed, name + ": its MAT", "fixed");
+  const MatKind kind = description.mats[surface.mat].kind;
+  const auto is_driven = [&] {
+    return std::ranges::find(description.drives, surface.mat, &Drive::mat) !=
+           description.drives.end();
+  };
+  require(kind == MatKind::kFixed || (kind == MatKind::kPort && is_driven()), name + ": its MAT",
+          "fixed, or driven to a position");
   require(surface_of(description, surface.mat) == &surface, name + ": its MAT",
           "that of one surface alone");
   const Vec3& size = surface.half_size;

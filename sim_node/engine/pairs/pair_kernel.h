@@ -116,6 +116,7 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
 struct PlaneQuery {
   double normal[3] = {};
   double centre[3] = {};  // [m]
+  double moved = 0.0;     // of the plane along its normal, x(n) - x(n-1) [m]
   double range = 0.0;     // [m]
 };
 

@@ -120,6 +120,7 @@ std::size_t gather_plane(const MemberColumns& members, const PlaneQuery& plane,
   const Row3 centre{Lanes::every(plane.centre[0]), Lanes::every(plane.centre[1]),
                     Lanes::every(plane.centre[2])};
   const Row range = Lanes::every(plane.range);
+  const Row plane_moved = Lanes::every(plane.moved);
   const Row smallest = Lanes::every(kMinSquare);
   const Row one = Lanes::every(1.0);
   std::size_t count = 0;
@@ -141,7 +142,7 @@ std::size_t gather_plane(const MemberColumns& members, const PlaneQuery& plane,
     Lanes::pack(out.square + count, Lanes::maximum(apart * apart, smallest), chosen);
     Lanes::pack(out.length + count, height, chosen);
     Lanes::pack(out.elongation_increment + count,
-                normal.x * way.x + normal.y * way.y + normal.z * way.z, chosen);
+                normal.x * way.x + normal.y * way.y + normal.z * way.z - plane_moved, chosen);
     count += static_cast<std::size_t>(__builtin_popcount(chosen));
   }
   return count;

@@ -492,6 +492,7 @@ std::size_t SetPairs::gather_within(double range, std::size_t a, const std::uint
   plane.range = range;
   std::copy_n(shape.axis.data(), 3, plane.normal);
   std::copy_n(surfaces_.centre(a).data(), 3, plane.centre);
+  plane.moved = dot(plane.normal, moved_.data() + 4 * a);
   return kernel_.gather_plane(members(), plane, neighbour, count, row);
 }
 
@@ -499,6 +500,7 @@ std::size_t SetPairs::gather_within(double range, std::size_t a, const std::uint
 std::size_t SetPairs::gather_at_surface(double range, std::size_t a, const std::uint32_t* neighbour,
                                         std::size_t candidates) noexcept {
   const PairRow row = block_.next_row();
+  const Vec3 own_way = Vec3::Map(moved_.data() + 4 * a);
   std::size_t count = 0;
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::uint32_t column = neighbour[i];
@@ -514,7 +516,8 @@ std::size_t SetPairs::gather_at_surface(double range, std::size_t a, const std::
     row.square[count] = still ? 0.0 : std::max(apart * apart, kMinSquare);
     row.length[count] = from.distance;
     row.inverse[count] = still ? 0.0 : 1.0;
-    row.elongation_increment[count] = dot(from.normal, Vec3::Map(moved_.data() + column));
+    row.elongation_increment[count] =
+        dot(from.normal, Vec3(Vec3::Map(moved_.data() + column) - own_way));
     ++count;
   }
   return count;
@@ -660,6 +663,7 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
 /// @param may_leave  what is too far away is listed no longer, and its forces are forgotten
 void SetPairs::measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                                 bool may_leave) noexcept {
+  surfaces_.follow(position, column);
   surfaces_.visit_due(position, column, [&](std::size_t ball) {
     const std::size_t m = count_p_ + ball;
     const auto own = static_cast<std::uint32_t>(4 * m);
@@ -880,8 +884,9 @@ bool SetPairs::wants_room(const double* position) const noexcept {
 
 bool SetPairs::covers(const double* position) const noexcept {
   if (surfaces_.empty()) return neighbours_.covers(position, column_);
+  const double ahead = surfaces_.way_to(position, column_);
   for (std::size_t m = count_p_; m < column_.size(); ++m) {
-    if (surfaces_.is_due(m - count_p_, position + column_[m])) return false;
+    if (surfaces_.is_due(m - count_p_, position + column_[m], ahead)) return false;
   }
   return true;
 }
@@ -926,6 +931,7 @@ void SetPairs::make_list_room() noexcept {
 void SetPairs::refresh_at(const double* position) noexcept {
   if (!surfaces_.empty()) {
     measure_surfaces(position, column_, /*may_leave=*/false);
+    surfaces_.follow(position_.data(), own_column_);
     return;
   }
   for (std::size_t m = 0; m < column_.size(); ++m) {

@@ -11,7 +11,9 @@ namespace cordis::engine {
 namespace {
 
 constexpr double kSkin = 0.5;            // of the range
-constexpr double kFreeWayMargin = 1e-9;  // of coordinates, and of squares
+constexpr double kFreeWayMargin = 1e-9;  // of coordinates, of ways and of squares
+constexpr double kMaxWay = 1000.0;       // of the range: what it is rounded by stays small
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 bool do_follow_each_other(const std::vector<std::uint32_t>& mats) {
   for (std::size_t i = 1; i < mats.size(); ++i) {
@@ -31,6 +33,9 @@ SurfaceNeighbours::SurfaceNeighbours(const NetworkDescription& network, const Se
   for (const std::uint32_t mat : set.set_p) {
     shapes_.push_back(*surface_of(network, mat));
     centres_.push_back(network.mats[mat].position);
+    if (network.mats[mat].kind != MatKind::kFixed) {
+      driven_.push_back(static_cast<std::uint32_t>(shapes_.size() - 1));
+    }
     farthest_ = std::max({farthest_, range_, centres_.back().cwiseAbs().maxCoeff()});
   }
   const std::size_t balls = set.set_q.size();
@@ -46,14 +51,37 @@ SurfaceNeighbours::SurfaceNeighbours(const NetworkDescription& network, const Se
   members_.reserve(balls);
 }
 
+void SurfaceNeighbours::follow(const double* position,
+                               const std::vector<std::uint32_t>& column) noexcept {
+  const double way = way_to(position, column);
+  if (way == 0.0) return;
+  for (const std::uint32_t surface : driven_) {
+    centres_[surface] = Vec3::Map(position + column[surface]);
+    farthest_ = std::max(farthest_, centres_[surface].cwiseAbs().maxCoeff());
+  }
+  way_ = std::nextafter(way_ + way, kEndless);
+  if (way_ > kMaxWay * range_) forget();
+}
+
+double SurfaceNeighbours::way_to(const double* position,
+                                 const std::vector<std::uint32_t>& column) const noexcept {
+  double longest = 0.0;
+  for (const std::uint32_t surface : driven_) {
+    const Vec3 place = Vec3::Map(position + column[surface]);
+    longest = std::max(longest, (place - centres_[surface]).norm());
+  }
+  return longest * (1.0 + kFreeWayMargin);
+}
+
 void SurfaceNeighbours::forget() noexcept {
+  way_ = 0.0;
   std::fill(free_way_.begin(), free_way_.end(), -1.0);
   std::fill(min_free_way_.begin(), min_free_way_.end(), -1.0);
 }
 
 double SurfaceNeighbours::begin_measure(std::size_t ball, const double* place) noexcept {
   std::copy_n(place, 3, from_.begin() + static_cast<std::ptrdiff_t>(4 * ball));
-  return std::numeric_limits<double>::infinity();
+  return kEndless;
 }
 
 void SurfaceNeighbours::end_measure(std::size_t ball, const double* place,
@@ -64,7 +92,7 @@ void SurfaceNeighbours::end_measure(std::size_t ball, const double* place,
   }
   const double sure =
       free_way - kFreeWayMargin * (std::isinf(free_way) ? 0.0 : farthest + free_way);
-  free_way_[ball] = sure > 0.0 ? sure * sure : -1.0;
+  free_way_[ball] = sure > 0.0 ? sure + way_ : -1.0;
   min_free_way_[ball / kChunk] = -1.0;
 }
 
@@ -73,7 +101,7 @@ bool SurfaceNeighbours::stays(std::size_t ball, std::size_t count, const double*
   const auto first = free_way_.begin() + static_cast<std::ptrdiff_t>(ball);
   if (minimum < 0.0) minimum = *std::min_element(first, first + static_cast<std::ptrdiff_t>(count));
   return kernel_->largest_move(places, from_.data() + 4 * ball, count) <
-         minimum * (1.0 - kFreeWayMargin);
+         square_of_rest(minimum) * (1.0 - kFreeWayMargin);
 }
 
 bool SurfaceNeighbours::is_far(std::size_t ball) const noexcept {

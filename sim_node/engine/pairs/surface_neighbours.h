@@ -19,6 +19,8 @@ namespace cordis::engine {
 /// place moves; so no pair in range is missing until the ball has moved by its free way, and then it
 /// alone is measured again. (Distances are within 1e-13 of their coordinates; a free way is shorter by
 /// 1e-9 of them.) The balls of a row are in their order, whenever they were measured.
+///
+/// What driven surfaces move by shortens the free ways of all balls, by the longest way of each step.
 class SurfaceNeighbours {
  public:
   /// Empty unless the set acts on surfaces.
@@ -40,6 +42,11 @@ class SurfaceNeighbours {
     return distance_from(shape(surface), centre(surface), Vec3::Map(place));
   }
 
+  /// Puts the driven surfaces where they are. Real time: O(driven surfaces), now and then O(balls).
+  /// @param position  columns of 4 values; surface s is at position[column[s]]
+  void follow(const double* position, const std::vector<std::uint32_t>& column) noexcept;
+  /// The longest way of a driven surface to there [m]. Real time: O(driven surfaces).
+  double way_to(const double* position, const std::vector<std::uint32_t>& column) const noexcept;
   /// Shows every ball, from 0 on, that has to be measured at its place. Real time: O(balls).
   /// @param position  columns of 4 values; ball b is at position[column[P + b]]
   template <class Visit>
@@ -58,13 +65,14 @@ class SurfaceNeighbours {
     }
   }
   /// Precondition: the ball exists.
-  bool is_due(std::size_t ball, const double* place) const noexcept {
+  /// @param ahead  what the surfaces have yet to move by, at most [m]
+  bool is_due(std::size_t ball, const double* place, double ahead = 0.0) const noexcept {
     CORDIS_ASSERT(ball < free_way_.size());
     const double* from = from_.data() + 4 * ball;
     const double x = place[0] - from[0];
     const double y = place[1] - from[1];
     const double z = place[2] - from[2];
-    return !(x * x + y * y + z * z < free_way_[ball]);
+    return !(x * x + y * y + z * z < square_of_rest(free_way_[ball] - ahead));
   }
   /// Measures a ball. Real time: O(surfaces).
   /// @param is_kept  of a surface: it stays listed, however far it is
@@ -103,6 +111,11 @@ class SurfaceNeighbours {
   static constexpr std::size_t kBits = 64;
   static constexpr std::size_t kChunk = 32;  // balls that are compared at once
 
+  /// The square of what is left of a free way [m^2], below 0 when nothing is.
+  double square_of_rest(double free_way) const noexcept {
+    const double left = free_way - way_;
+    return left > 0.0 ? left * left : -1.0;
+  }
   double begin_measure(std::size_t ball, const double* place) noexcept;
   void set_listed(std::size_t ball, std::size_t surface, bool is_listed) noexcept {
     std::uint64_t& word = listed_[ball * words_ + surface / kBits];
@@ -127,9 +140,11 @@ class SurfaceNeighbours {
   std::size_t words_ = 0;
   std::vector<Surface> shapes_;
   std::vector<Vec3> centres_;             // [m]
+  std::vector<std::uint32_t> driven_;     // surfaces that are driven
+  double way_ = 0.0;                      // of these since all balls were due, no less [m]
   std::vector<std::uint64_t> listed_;     // `words_` of each ball, a bit for each surface
   AlignedVector<double> from_;            // 4 of each ball: where it was measured
-  std::vector<double> free_way_;          // of each ball, its square [m^2]
+  std::vector<double> free_way_;          // of each ball, plus `way_` where it was measured [m]
   std::vector<double> min_free_way_;      // of each chunk; < 0: not known
   bool follow_each_other_ = false;        // the columns of all balls
   std::vector<std::size_t> start_{0};     // by row; one past the last too

@@ -156,6 +156,27 @@ double reach_of_force(const NetworkDescription& network, const SetLiaison& set) 
   return std::min(rest, set.range);
 }
 
+/// A number for each surface: those whose drives are alike have one number, what is fixed has 0.
+std::vector<std::size_t> groups_that_move_alike(const NetworkDescription& network,
+                                                const std::vector<std::uint32_t>& mats) {
+  std::vector<const engine::Drive*> drives;  // one of each number
+  std::vector<std::size_t> groups;
+  for (const std::uint32_t mat : mats) {
+    const auto own = std::ranges::lower_bound(network.drives, mat, {}, &engine::Drive::mat);
+    if (own == network.drives.end() || own->mat != mat) {
+      groups.push_back(0);
+      continue;
+    }
+    const auto is_alike = [&](const engine::Drive* other) {
+      return other->function == own->function && other->turn == own->turn;
+    };
+    const auto known = std::ranges::find_if(drives, is_alike);
+    groups.push_back(static_cast<std::size_t>(known - drives.begin()) + 1);
+    if (known == drives.end()) drives.push_back(&*own);
+  }
+  return groups;
+}
+
 /// Every mass may come to where most surfaces are: no pose has more, unless pairs outlast their range.
 PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLiaison& set,
                                  const std::vector<std::uint32_t>& at_start) {
@@ -166,7 +187,8 @@ PartnerBounds bounds_on_surfaces(const NetworkDescription& network, const SetLia
     centres.push_back(network.mats[mat].position);
   }
   const double most =
-      max_surfaces_in_reach(surfaces, centres, reach_of_force(network, set), network.dimension);
+      max_surfaces_in_reach(surfaces, centres, reach_of_force(network, set), network.dimension,
+                            groups_that_move_alike(network, set.set_p));
   PartnerBounds bounds;
   bounds.needed.assign(set.set_p.size(), static_cast<double>(set.set_q.size()));
   bounds.needed.resize(set.set_p.size() + set.set_q.size(), most);

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "node/assert.h"
+
 namespace cordis::plan {
 namespace {
 
@@ -189,12 +191,14 @@ class LargestGroup {
 }  // namespace
 
 double max_surfaces_in_reach(const std::vector<Surface>& surfaces, const std::vector<Vec3>& centres,
-                             double reach, int dimension) {
+                             double reach, int dimension, const std::vector<std::size_t>& group) {
+  CORDIS_ASSERT(group.empty() || group.size() == surfaces.size());
   const std::size_t count = surfaces.size();
   std::vector<std::vector<bool>> joined(count, std::vector<bool>(count, false));
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = a + 1; b < count; ++b) {
       const bool together =
+          (!group.empty() && group[a] != group[b]) ||
           share_a_place({surfaces[a], centres[a]}, {surfaces[b], centres[b]}, reach, dimension);
       joined[a][b] = joined[b][a] = together;
     }
