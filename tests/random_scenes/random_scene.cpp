@@ -750,11 +750,19 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return ", line";
   }
 
+  /// A surface in eight is shaken.
+  std::string perhaps_driven(std::string surface) {
+    if (matter_ == Matter::kPotentials || drive_between(0.0, 1.0) > 0.125) return surface;
+    surface.insert(surface.size() - 1,
+                   ", driven: {displacement_m: " + function_of_time(0.02) + "}");
+    return surface;
+  }
+
   void add_surfaces() {
     const std::uint32_t surfaces = 1 + below(3);
     std::string names;
     for (std::uint32_t s = 0; s < surfaces; ++s) {
-      masses_ += fmt::format("  f{}: {}\n", s, surface());
+      masses_ += fmt::format("  f{}: {}\n", s, perhaps_driven(surface()));
       names += fmt::format("{}f{}", s > 0 ? ", " : "", s);
     }
     if (space_ == 2) names += polyline();

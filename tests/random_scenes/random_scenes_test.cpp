@@ -518,6 +518,8 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
     return std::nullopt;
   for (engine::Mat& mat : network.mats) mat.velocity.setZero();
   network.drives.clear();
+  for (const engine::Surface& surface : network.surfaces)
+    network.mats[surface.mat].kind = MatKind::kFixed;
   std::vector<engine::StateMachine> alone;
   for (engine::StateLink& link : network.state_links) {
     alone.push_back(plan::start_state_alone(network.state_machines[link.state_machine]));

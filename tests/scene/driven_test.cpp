@@ -124,6 +124,48 @@ matter:
             1e-15);
 }
 
+TEST(DrivenMatter, OfSurfacesIsThatOfTheirMats) {
+  const Scene scene = sound_scene(2, R"YAML(
+matter:
+  floor: {kind: plane, at_m: [0, 1], normal: y, driven: {displacement_m: [0, 2 * time_s]}}
+  ram: {kind: box, center_m: [3, 0], size_m: [1, 1], driven: {displacement_m: {at_s: [0, 1], values: [[0, 0], [1, 0]]}}}
+  post: {kind: cylinder, center_m: [0, 5], radius_m: 1, driven: {displacement_m: [time_s, 0]}}
+  hills: {kind: polyline, corners_m: [[0, 0], [2, 0], [4, 2]], driven: {displacement_m: [0, time_s]}}
+  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+)YAML");
+  ASSERT_EQ(scene.network.surfaces.size(), 5u);
+  ASSERT_EQ(scene.network.drives.size(), 5u);
+  const Vec3 places[] = {Vec3(0, 2, 0), Vec3(3.5, 0, 0), Vec3(0.5, 5, 0), Vec3(1, 0.5, 0),
+                         Vec3(3, 1.5, 0)};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(scene.network.surfaces[i].mat, i);
+    EXPECT_EQ(scene.network.mats[i].kind, MatKind::kPort);
+    EXPECT_EQ(place_at(scene, i, 0.0), scene.network.mats[i].position);
+    EXPECT_EQ(place_at(scene, i, 0.5), places[i]);
+  }
+  EXPECT_EQ(scene.network.drives[3].function, scene.network.drives[4].function);
+}
+
+TEST(DrivenMatter, OfAPartTakesItsSurfacesAlong) {
+  const Scene scene = sound_scene(2, R"YAML(
+parts:
+  sieve:
+    matter:
+      wire: {kind: cylinder, center_m: [1, 0], radius_m: 0.1}
+      wall: {kind: plane, at_m: [0, 0], normal: x}
+      rim: {kind: fixed, at_m: [0, 0]}
+matter:
+  u: {part: sieve, rotate_deg: 90, driven: {displacement_m: [3 * time_s, 0]}}
+  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+)YAML");
+  ASSERT_EQ(scene.network.drives.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 way = place_at(scene, i, 1.0) - scene.network.mats[i].position;
+    EXPECT_LT((way - Vec3(3, 0, 0)).norm(), 1e-15);
+  }
+  EXPECT_LT((scene.network.surfaces[1].axis - Vec3(0, 1, 0)).norm(), 1e-15);
+}
+
 constexpr BadScene kBadDriven[] = {
     {kHead2,
      R"(parts:
@@ -143,9 +185,9 @@ matter:
      R"(parts:
   p: {matter: {a: {kind: plane, at_m: [0, 0], normal: y}}}
 matter:
-  u: {part: p, driven: ^{displacement_m: [0, 0]}}
+  u: {part: p, driven: ^{force_n: [0, 1]}}
 )",
-     "a surface cannot be driven, and matter 'u' has one", ""},
+     "'force_n' drives masses, matter 'u' has none", ""},
     {kHead2,
      R"(parts:
   p: {matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, 0]}}}
@@ -194,8 +236,19 @@ matter:
     {kHead1, "matter:\n  a: {kind: fixed, at_m: 0, driven: ^{force_n: 1}}\n",
      "'force_n' drives masses, matter 'a' has none", ""},
     {kHead2,
-     "matter:\n  a: {kind: plane, at_m: [0, 0], normal: y, driven: ^{displacement_m: [0, 0]}}\n",
-     "a surface cannot be driven", ""},
+     "matter:\n  a: {kind: plane, at_m: [0, 0], normal: y, driven: ^{position_m: [0, 0]}}\n",
+     "a surface follows displacement_m", ""},
+    {kHead2,
+     R"(matter:
+  a: {kind: polyline, corners_m: [[0, 0], [1, 0], [2, 1]], driven: ^{force_n: [0, 0]}}
+)",
+     "a surface follows displacement_m", ""},
+    {kHead2,
+     R"(matter:
+  a: {kind: box, center_m: [0, 0], size_m: [1, 1], ^velocity_m_per_s: [1, 0], driven: {displacement_m: [0, 0]}}
+)",
+     "unknown key 'velocity_m_per_s' in matter 'a'",
+     "known keys: kind, driven, center_m, size_m, color"},
     {kHead1,
      "matter:\n  a: {kind: fixed, driven: {position_m: {at_s: ^[0, 2, 2], values: [1, 2, 3]}}}\n",
      "'at_s' in 'position_m' in 'driven' of matter 'a' must grow from each time to the next, got 2 "

@@ -197,7 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "'radius_m' in matter 'a' must be > 0 and <= 1000000, got 0", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: cylinder, center_m: [0, 0], radius_m: 1, ^axis: x}\n",
-                 "unknown key 'axis' in matter 'a'", "known keys: kind, center_m, radius_m, color"},
+                 "unknown key 'axis' in matter 'a'",
+                 "known keys: kind, driven, center_m, radius_m, color"},
         BadScene{kHead1, "matter:\n  a: {kind: ^cylinder, center_m: 0, radius_m: 1}\n",
                  "a cylinder needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{
@@ -234,7 +235,7 @@ links:
 links:
   - {liaison: s, between_sets: ^[f, g], rest_m: 1, range_m: 1}
 )",
-                 "both sets are surfaces, which never move", ""},
+                 "both sets are surfaces", ""},
         BadScene{kHead2,
                  R"(liaisons:
   v: {elasticity: {kind: lennard_jones, depth_j: 1, diameter_m: 1, cut_m: 3}}

@@ -147,8 +147,8 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems&
 
 void drive(const DriveSpec& spec, MappingReader& reader, GeneratedMatter& matter) {
   if (matter.mats.empty()) return;  // after a problem
-  if (!matter.surfaces.empty()) {
-    reader.error_at("driven", "a surface cannot be driven");
+  if (!matter.surfaces.empty() && spec.kind != DriveSpec::Kind::kDisplacement) {
+    reader.error_at("driven", "a surface follows displacement_m");
     return;
   }
   if (spec.kind == DriveSpec::Kind::kForce) {

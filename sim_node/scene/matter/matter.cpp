@@ -59,7 +59,7 @@ const MatterKind* kind_named(const std::string& word) {
   return nullptr;
 }
 
-/// True if `driven` is no key to be offered.
+/// True if it is a shape.
 bool is_surface(const MatterKind& kind) {
   return kind.read == read_plane_surface || kind.read == read_box || kind.read == read_cylinder ||
          kind.read == read_polyline;
@@ -133,8 +133,7 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   if (!check_space(reader, kind, space)) return {};
 
   Source source{reader, liaisons, space, may_be_massless, problems};
-  std::optional<DriveSpec> spec;
-  if (!is_surface(kind) || reader.has("driven")) spec = read_driven(reader, space, problems);
+  const std::optional<DriveSpec> spec = read_driven(reader, space, problems);
   const engine::Vec3 led_from = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
   if (reader.has("driven") && reader.optional_value("driven").find("position_m").exists()) {
     source.driven_start = &led_from;

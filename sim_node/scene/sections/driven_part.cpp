@@ -30,9 +30,6 @@ std::string contradiction(const Scene& scene, const DriveSpec& spec, std::uint32
     });
     return has_mass ? "" : "'force_n' drives masses, " + what + " has none";
   }
-  if (!network.surfaces.empty() && network.surfaces.back().mat >= first) {
-    return "a surface cannot be driven, and " + what + " has one";
-  }
   const bool has_velocity = std::any_of(
       begin, network.mats.end(), [](const engine::Mat& mat) { return !mat.velocity.isZero(0.0); });
   return has_velocity ? "a driven position has the velocity of its function, and " + what +

@@ -70,7 +70,7 @@ bool take_surfaces(Assembly& assembly, config::MappingReader& reader,
   };
   if (assembly.count_surfaces(sets[0]) + assembly.count_surfaces(sets[1]) == 0) return true;
   if (is_whole(sets[0]) && is_whole(sets[1])) {
-    reader.error_at("between_sets", "both sets are surfaces, which never move");
+    reader.error_at("between_sets", "both sets are surfaces");
     return false;
   }
   if (!is_whole(sets[0])) std::swap(sets[0], sets[1]);
