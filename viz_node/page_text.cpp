@@ -13,6 +13,7 @@
 #include "node/status_words.h"
 #include "node/time_scale.h"
 #include "viz_node/frame_encoder.h"
+#include "viz_node/render/surface_mats.h"
 
 namespace cordis::viz {
 namespace {
@@ -109,10 +110,13 @@ const char* word_of(msg::SurfaceKind kind) {
   return "plane";
 }
 
-Json surfaces(const std::vector<msg::SurfaceDescription>& described) {
+Json surfaces(const msg::SceneDescription& description) {
   Json list = Json::array();
-  for (const msg::SurfaceDescription& surface : described) {
+  const std::vector<std::uint32_t> mats = mats_of_surfaces(description);
+  for (std::size_t i = 0; i < mats.size(); ++i) {
+    const msg::SurfaceDescription& surface = description.surfaces()[i];
     list.push_back({{"name", clipped(surface.name())},
+                    {"mat", mats[i] == msg::NO_INDEX ? Json() : Json(mats[i])},
                     {"kind", word_of(surface.kind())},
                     {"centre", surface.centre_m()},
                     {"axis", surface.axis()},
@@ -330,7 +334,7 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"state_machines", state_machines(description.state_machines())},
                   {"ports", ports(description.ports(), description.port_frames())},
                   {"signals", std::move(signals)},
-                  {"surfaces", surfaces(description.surfaces())},
+                  {"surfaces", surfaces(description)},
                   {"colours", colours(description.colours())},
                   {"colours_left_out", description.colours().size() -
                                            std::min(description.colours().size(), kMaxColours)}});

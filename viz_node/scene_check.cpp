@@ -97,6 +97,12 @@ std::string fault_of(const msg::SceneDescription& description) {
     return count_fault("too many surfaces", description.surfaces().size(), kMaxSurfaces);
   if (!std::ranges::all_of(description.surfaces(), has_shape))
     return "a surface of the description has no place, no axis or no size";
+  const std::vector<std::uint32_t>& surface_mat = description.surface_mat();
+  if (!surface_mat.empty() && surface_mat.size() != description.surfaces().size())
+    return count_fault("MATs of surfaces in the description", surface_mat.size(),
+                       description.surfaces().size());
+  if (std::ranges::any_of(surface_mat, [mats](auto mat) { return mat >= mats; }))
+    return "a surface of the description is at a MAT that does not exist";
   return {};
 }
 

@@ -29,9 +29,9 @@ std::size_t missing_bytes(typename TypeOf<Message>::Type& type, Message& message
   return is_older ? sizeof(double) : 0;
 }
 
-/// The last wire versions whose SceneDescription ends without `colours`, `surfaces`, `port_frames`:
-/// each lacks what stands before it in this list as well.
-constexpr std::array<std::uint32_t, 3> kLastWithout{5, 4, 3};
+/// The last wire versions whose SceneDescription ends without `surface_mat`, `colours`, `surfaces`,
+/// `port_frames`: each lacks what stands before it in this list as well.
+constexpr std::array<std::uint32_t, 4> kLastWithout{7, 5, 4, 3};
 
 constexpr std::size_t kCount = 4;  // bytes of the count of a sequence
 

@@ -182,6 +182,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   }
   for (const engine::Surface& surface : scene.network.surfaces) {
     description.surfaces().push_back(surface_of(scene, surface, layout));
+    description.surface_mat().push_back(surface.mat);
   }
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription message;

@@ -193,6 +193,7 @@ Sample any_description() {
     message.port_frames().push_back(frame);
   }
   json surfaces = json::array();
+  json surface_mat = json::array();
   for (std::size_t i = any_u32() % 3; i > 0; --i) {
     msg::SurfaceDescription surface;
     surface.name(any_text());
@@ -206,6 +207,8 @@ Sample any_description() {
                         {"axis", surface.axis()},
                         {"size_m", surface.size_m()}});
     message.surfaces().push_back(surface);
+    message.surface_mat().push_back(any_u32());
+    surface_mat.push_back(message.surface_mat().back());
   }
   json colours = json::array();
   for (std::size_t i = any_u32() % 3; i > 0; --i) {
@@ -226,14 +229,29 @@ Sample any_description() {
   return {"scene/description",
           "cordis::msg::SceneDescription",
           payload_of(message),
-          {{"wire_version", 0},          {"epoch", "0"},         {"version", "0"},
-           {"name", message.name()},     {"space", 0},           {"step_rate_hz", 0},
-           {"gesture_rate_hz", 0},       {"frame_rate_hz", 0},   {"mat_kind", none},
-           {"mat_mass_kg", none},        {"mat_radius_m", none}, {"matter", none},
-           {"link_ends", none},          {"links", none},        {"state_machines", none},
-           {"link_state_machine", none}, {"ports", ports},       {"port_frames", port_frames},
-           {"signals", signals},         {"scene_file", ""},     {"surfaces", surfaces},
-           {"colours", colours}}};
+          {{"wire_version", 0},
+           {"epoch", "0"},
+           {"version", "0"},
+           {"name", message.name()},
+           {"space", 0},
+           {"step_rate_hz", 0},
+           {"gesture_rate_hz", 0},
+           {"frame_rate_hz", 0},
+           {"mat_kind", none},
+           {"mat_mass_kg", none},
+           {"mat_radius_m", none},
+           {"matter", none},
+           {"link_ends", none},
+           {"links", none},
+           {"state_machines", none},
+           {"link_state_machine", none},
+           {"ports", ports},
+           {"port_frames", port_frames},
+           {"signals", signals},
+           {"scene_file", ""},
+           {"surfaces", surfaces},
+           {"colours", colours},
+           {"surface_mat", surface_mat}}};
 }
 
 bool write_take(const std::filesystem::path& folder, mcap::Compression compression) {

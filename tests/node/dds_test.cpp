@@ -74,19 +74,20 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionIsReadWithoutWhatItLacks) {
   for (const char* file : {"s", "sc", "sce", "scen"}) {  // each alignment of what follows
     msg::SceneDescription description;
     description.scene_file(file);
-    for (const std::uint32_t version : {3u, 4u, 5u, 6u}) {
+    for (const std::uint32_t version : {3u, 4u, 5u, 7u, 8u}) {
       description.wire_version(version);
       std::vector<std::byte> payload = encode(description);
       msg::SceneDescription read;
       ASSERT_TRUE(decode(payload, read));
-      for (const std::uint32_t last : {5u, 4u, 3u}) {
-        // the count of `colours`, of `surfaces`, of `port_frames`
+      for (const std::uint32_t last : {7u, 5u, 4u, 3u}) {
+        // the count of `surface_mat`, of `colours`, of `surfaces`, of `port_frames`
         payload.resize(payload.size() - 4);
         EXPECT_EQ(decode(payload, read), version <= last) << file << ", version " << version;
         if (version > last) continue;
         EXPECT_EQ(read.scene_file(), file);
-        EXPECT_TRUE(read.colours().empty());
-        EXPECT_TRUE(last == 5u || read.surfaces().empty());
+        EXPECT_TRUE(read.surface_mat().empty());
+        EXPECT_TRUE(last == 7u || read.colours().empty());
+        EXPECT_TRUE(last >= 5u || read.surfaces().empty());
         EXPECT_TRUE(last >= 4u || read.port_frames().empty());
       }
     }
@@ -100,7 +101,7 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   description.port_frames().resize(2);
   description.port_frames()[1].direction({0.0, 1.0, 0.5});
   std::vector<std::byte> payload = encode(description);
-  payload.resize(payload.size() - 8);  // the counts of `surfaces` and `colours`
+  payload.resize(payload.size() - 12);  // the counts of `surfaces`, `colours` and `surface_mat`
   msg::SceneDescription read;
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.port_frames(), description.port_frames());
@@ -109,9 +110,18 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   description.surfaces().resize(1);
   description.surfaces()[0].size_m({0.25, 0.5, 0.125});
   payload = encode(description);
-  payload.resize(payload.size() - 4);  // the count of `colours`
+  payload.resize(payload.size() - 8);  // the counts of `colours` and `surface_mat`
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.surfaces(), description.surfaces());
+
+  description.wire_version(7);
+  description.colours().resize(1);
+  description.colours()[0].red(77);
+  payload = encode(description);
+  payload.resize(payload.size() - 5);  // the count of `surface_mat`, and what aligns it
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.surfaces(), description.surfaces());
+  EXPECT_EQ(read.colours(), description.colours());
 }
 
 /// A reader with an Arrival takes samples out of DDS in the thread that receives them: one of DDS, or

@@ -1,4 +1,4 @@
-// tests/render/surface_image_test.cpp -- fixed surfaces in images: where their corners are, and
+// tests/render/surface_image_test.cpp -- surfaces in images: where their corners are, and
 // what they hide.
 #include <algorithm>
 #include <array>
@@ -77,6 +77,48 @@ TEST_P(SurfaceImage, HasThePixelsItEverHad) {
   std::ofstream(path, std::ios::binary) << png_of(image);
   EXPECT_EQ(test::hexadecimal(image.hash()), test::golden_hashes("images.yaml")[name])
       << "look at " << path;
+}
+
+TEST_P(SurfaceImage, OfADrivenSurfaceIsThatOfAFixedOneWhereItsMatIs) {
+  Surfaces surfaces = {
+      test::surface("wall", msg::SURFACE_PLANE, {-0.4, 0.0, 0.0}, {1.0, 0.0, 0.0}, {}),
+      test::surface("step", msg::SURFACE_BOX, {0.2, -0.1, 0.0}, {}, {0.06, 0.05, 0.2}),
+      test::surface("post", msg::SURFACE_CYLINDER, {0.0, -0.05, 0.2}, {0.0, 1.0, 0.0}, {0.03, 0.2}),
+      test::surface("floor", msg::SURFACE_PLANE, {0.0, -0.2, 0.0}, {0.0, 1.0, 0.0}, {})};
+  if (GetParam() == 2)
+    surfaces.push_back(
+        test::surface("hill", msg::SURFACE_SEGMENT, {-0.1, 0.1, 0.0}, {0.6, 0.8, 0.0}, {0.2}));
+  const Point way{0.0625, 0.03125, 0.0};
+  std::vector<Point> places = {{0.0, 0.0, 0.0}, {0.3, 0.1, 0.1}};
+  std::vector<std::uint32_t> mats;
+  for (const msg::SurfaceDescription& surface : surfaces) {
+    mats.push_back(static_cast<std::uint32_t>(places.size()));
+    places.push_back({surface.centre_m()[0], surface.centre_m()[1], surface.centre_m()[2]});
+  }
+  const auto image_of = [&](std::size_t moved, std::uint8_t kind) {
+    std::vector<Point> now = places;
+    Surfaces described = surfaces;
+    now[mats[moved]] = now[mats[moved]] + way;
+    if (kind == msg::MAT_FIXED) {
+      const auto [x, y, z] = now[mats[moved]];
+      // In a frame coordinates have 32 bits.
+      described[moved].centre_m(
+          {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+    }
+    BallScene scene = ball_scene(now, 0.02F, GetParam(), described);
+    for (const std::uint32_t mat : mats) {
+      scene.description.mat_kind()[mat] = msg::MAT_FIXED;
+      scene.description.mat_radius_m()[mat] = 0.0F;
+    }
+    scene.description.mat_kind()[mats[moved]] = kind;
+    scene.description.surface_mat(mats);
+    FilmView view(scene.description, {.width = 320, .height = 180});
+    return view.draw(scene.frame).hash();
+  };
+  for (std::size_t moved = 0; moved < surfaces.size(); ++moved) {
+    EXPECT_EQ(image_of(moved, msg::MAT_PORT), image_of(moved, msg::MAT_FIXED))
+        << surfaces[moved].name();
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Spaces, SurfaceImage, testing::Values(2, 3));

@@ -120,6 +120,16 @@ TEST(Description, SaysNothingOfStatesWhenThereAreNone) {
   EXPECT_TRUE(message.link_state_machine().empty());
 }
 
+TEST(Description, SaysWhichMatsTheSurfacesAreAt) {
+  auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
+  EXPECT_TRUE(describe(*scene, 1, 1).surface_mat().empty());
+  for (const std::uint32_t mat : {2U, 1U})
+    scene->network.surfaces.push_back({engine::SurfaceKind::kPlane, mat});
+  const msg::SceneDescription message = describe(*scene, 1, 1);
+  EXPECT_EQ(message.surfaces().size(), 2u);
+  EXPECT_EQ(message.surface_mat(), (std::vector<std::uint32_t>{2, 1}));
+}
+
 TEST(Description, HasTheColoursOfTheScene) {
   auto scene = std::make_shared<scene::Scene>(*scene_of(swing_text()));
   EXPECT_TRUE(describe(*scene, 1, 1).colours().empty());

@@ -69,10 +69,28 @@ TEST(PageText, DescribesSurfacesByTheirKinds) {
        test::surface("step", msg::SURFACE_BOX, {1.0, 2.0, 3.0}, {}, {0.5, 0.25, 0.0}),
        test::surface("post", msg::SURFACE_CYLINDER, {4.0, 5.0, 6.0}, {1.0, 0.0, 0.0},
                      {0.125, 2.0})});
+  description.surface_mat({0, 2, 1});
   EXPECT_EQ(Json::parse(description_text(description, 1))["surfaces"], Json::parse(R"([
-    {"name": "floor", "kind": "plane", "centre": [0, -1, 0], "axis": [0, 1, 0], "size": []},
-    {"name": "step", "kind": "box", "centre": [1, 2, 3], "axis": [], "size": [0.5, 0.25, 0]},
-    {"name": "post", "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
+    {"name": "floor", "mat": 0, "kind": "plane", "centre": [0, -1, 0], "axis": [0, 1, 0], "size": []},
+    {"name": "step", "mat": 2, "kind": "box", "centre": [1, 2, 3], "axis": [], "size": [0.5, 0.25, 0]},
+    {"name": "post", "mat": 1, "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
+}
+
+TEST(PageText, FindsTheMatsOfSurfacesOfAnOlderTakeByTheirNames) {
+  msg::SceneDescription description = row_of_three();
+  msg::NamedRange hills;
+  hills.name("hills");
+  hills.first(1);
+  hills.count(2);
+  description.matter().push_back(hills);
+  const auto line = [](const char* name) {
+    return test::surface(name, msg::SURFACE_SEGMENT, {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0});
+  };
+  description.surfaces({line("hills"), line("hills"), line("gone")});
+  const Json surfaces = Json::parse(description_text(description, 1))["surfaces"];
+  EXPECT_EQ(surfaces[0]["mat"], 1);
+  EXPECT_EQ(surfaces[1]["mat"], 2);
+  EXPECT_TRUE(surfaces[2]["mat"].is_null());
 }
 
 TEST(PageText, DescribesColoursAndWherePortsAre) {

@@ -354,9 +354,9 @@ const cases = {
     await withClients(session.url, 1, async (client) => {
       const { surfaces } = await until('they came', () => client.newest('description')?.surfaces.length > 0 && client.newest('description'));
       assert.deepEqual(surfaces.map(({ name }) => name), ['floor', 'wall', 'step[0]', 'step[1]', 'step[2]', 'post']);
-      assert.deepEqual(surfaces[1], { name: 'wall', kind: 'plane', centre: [-0.4, 0, 0], axis: [1, 0, 0], size: [] });
-      assert.deepEqual(surfaces[2], { name: 'step[0]', kind: 'box', centre: [0.27, -0.125, 0], axis: [], size: [0.06, 0.05, 0.2] });
-      assert.deepEqual(surfaces[5], { name: 'post', kind: 'cylinder', centre: [0, -0.05, 0.27], axis: [0, 1, 0], size: [0.03, 0.2] });
+      assert.deepEqual(surfaces[1], { name: 'wall', mat: null, kind: 'plane', centre: [-0.4, 0, 0], axis: [1, 0, 0], size: [] });
+      assert.deepEqual(surfaces[2], { name: 'step[0]', mat: null, kind: 'box', centre: [0.27, -0.125, 0], axis: [], size: [0.06, 0.05, 0.2] });
+      assert.deepEqual(surfaces[5], { name: 'post', mat: null, kind: 'cylinder', centre: [0, -0.05, 0.27], axis: [0, 1, 0], size: [0.03, 0.2] });
     });
   },
 

@@ -69,10 +69,13 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"surface", [](auto& d) { d.surfaces()[5].axis().clear(); }},
       {"surface", [](auto& d) { d.surfaces()[5].size_m()[0] = 0.0; }},
       {"surface", [](auto& d) { d.surfaces()[5].kind(static_cast<msg::SurfaceKind>(9)); }},
+      {"MATs of surfaces", [](auto& d) { d.surface_mat().pop_back(); }},
+      {"does not exist", [](auto& d) { d.surface_mat()[5] = 3; }},
   };
   for (const auto& [word, spoil] : faults) {
     msg::SceneDescription description = row_of_three();
     description.surfaces(test::steps_and_post());
+    description.surface_mat({0, 1, 2, 0, 1, 2});
     ASSERT_EQ(fault_of(description), "");
     spoil(description);
     EXPECT_NE(fault_of(description).find(word), std::string::npos)

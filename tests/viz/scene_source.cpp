@@ -2,7 +2,7 @@
 // moves by formula.
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
-//                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--bad-frames]
+//                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--driven] [--bad-frames]
 //                     [--colours] [--keyboard] [--tool-radius METRES]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <algorithm>
@@ -51,6 +51,7 @@ struct Options {
   bool states = false;
   bool liaisons = false;  // two with states, and links without
   bool surfaces = false;
+  bool driven = false;    // one more surface, a box at a MAT that moves
   bool colours = false;   // of the scene's own, for three bodies
   bool keyboard = false;  // the device is one of four keys
   float tool_radius_m = 0.0F;
@@ -86,6 +87,8 @@ Options read_options(int argc, char** argv) {
       options.liaisons = true;
     } else if (word == "--surfaces") {
       options.surfaces = true;
+    } else if (word == "--driven") {
+      options.driven = true;
     } else if (word == "--colours") {
       options.colours = true;
     } else if (word == "--tool-radius") {
@@ -288,6 +291,21 @@ msg::DeviceDescription describe_keyboard(MovingScene& scene) {
 }
 
 /// Everything that sim_node writes but the description.
+/// A box that swings up and down; the other surfaces are at the first MAT.
+void add_driven_box(MovingScene& scene) {
+  msg::SceneDescription& description = scene.description;
+  msg::NamedRange ram;
+  ram.name("ram");
+  ram.first(static_cast<std::uint32_t>(description.mat_kind().size()));
+  ram.count(1);
+  add_mat(scene, -0.3, 0.3, kPort, 0.0F, 0.5, 0.5);
+  description.matter().push_back(ram);
+  description.surface_mat().assign(description.surfaces().size(), 0);
+  description.surfaces().push_back(
+      test::surface("ram", msg::SURFACE_BOX, {-0.3, 0.0, 0.3}, {}, {0.1, 0.02, 0.1}));
+  description.surface_mat().push_back(ram.first());
+}
+
 class Publisher {
  public:
   Publisher(dds::Participant& participant, MovingScene& scene, bool states)
@@ -362,6 +380,7 @@ int publish(const Options& options) {
   if (options.states && options.liaisons) describe_other_liaisons(scene.description);
   if (options.surfaces) scene.description.surfaces(test::steps_and_post());
   name_parts(scene, options.scene, options.bodies, epoch);
+  if (options.driven) add_driven_box(scene);
   if (options.colours) give_colours(scene.description);
   dds::Writer<msg::DeviceDescription> device_writer(keyboard, dds::Topic::kDevice);
   if (options.keyboard) {

@@ -1,4 +1,4 @@
-// tests/viz/surfaces_test.mjs -- fixed surfaces on the page: faces in their colours where the scene
+// tests/viz/surfaces_test.mjs -- surfaces on the page: faces in their colours where the scene
 // has them, behind and before matter, in the legend and in both themes. Real viz_node and headless
 // Chromium; the surfaces are those of tests/support/surfaces.h.
 import assert from 'node:assert/strict';
@@ -107,6 +107,29 @@ const cases = {
     const edge = bytesOf(palettes.dark.surface_edge);
     assert.ok(ink.some((colour) => edge.every((byte, k) => Math.abs(byte - colour[k]) < 60)), 'the floor is a line');
     await page.screenshot({ path: join(out, 'surfaces_flat.png') });
+  },
+
+  'a driven one is where its MAT is, and no port is drawn there': async (session) => {
+    const { page } = session;
+    await session.source.end();
+    session.source = session.scene('--scene', 'grid', '--surfaces', '--driven', '--amplitude', '0.1');
+    await until('the ram is there', async () => (await viz(page, 'scene'))?.space === 3 && (await viz(page, 'framesDrawn')) > 0);
+    await page.keyboard.press('4');
+    await drawn(page, 5);
+    await page.screenshot({ path: join(out, 'surfaces_driven.png') });
+    const wanted = bytesOf(palettes.dark.surface).map((byte) => byte * lightOn([0, 1, 0]));
+    const heights = new Set();
+    for (let round = 0; round < 12; ++round) {
+      await drawn(page, 3);
+      const { height, colours } = await page.evaluate(() => {
+        const [x, y, z] = window.viz.position(window.viz.scene.matCount - 1);
+        const tops = [[x, y + 0.01, z], [x + 0.04, y + 0.01, z + 0.04], [x - 0.04, y + 0.01, z - 0.04]];
+        return { height: y, colours: tops.map((at) => window.viz.screenOf(at)).map((there) => window.viz.pixelAt(there.x, there.y)) };
+      });
+      heights.add(Math.round(height * 100));
+      for (const colour of colours) assert.ok(wanted.every((byte, k) => Math.abs(byte - colour[k]) < 4), `at ${height} m its top is ${colour}, not ${wanted.map(Math.round)}`);
+    }
+    assert.ok(heights.size > 3, `it was at ${[...heights]} cm`);
   },
 
   'a scene without surfaces has none': async (session) => {

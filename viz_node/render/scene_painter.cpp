@@ -11,6 +11,7 @@
 
 #include "node/assert.h"
 #include "viz_node/render/number_text.h"
+#include "viz_node/render/surface_mats.h"
 
 namespace cordis::viz {
 namespace {
@@ -50,13 +51,6 @@ bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& ra
          });
 }
 
-/// True if a range is the MAT of a surface, or those of a polyline: they are drawn as that.
-bool is_surface(const msg::SceneDescription& description, const msg::NamedRange& range) {
-  return std::ranges::any_of(
-      description.surfaces(),
-      [&range](const msg::SurfaceDescription& surface) { return range.name() == surface.name(); });
-}
-
 }  // namespace
 
 ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme)
@@ -66,13 +60,14 @@ ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme
       radius_(description.mat_radius_m()),
       link_ends_(description.link_ends()),
       surfaces_(description.surfaces()),
+      surface_mat_(mats_of_surfaces(description)),
       has_planes_(std::ranges::any_of(surfaces_, [](const msg::SurfaceDescription& surface) {
         return surface.kind() == msg::SURFACE_PLANE;
       })) {
   find_looks(description);
   find_bodies(description);
   if (!description.colours().empty()) find_coloured_parts(description);
-  find_coloured_surfaces(description);
+  find_coloured_surfaces();
   find_patterns(description);
 }
 
@@ -91,8 +86,13 @@ void ScenePainter::find_looks(const msg::SceneDescription& description) {
       look_[range.first()] = is_ring ? Look::kRing : Look::kTool;
       (is_ring ? has_rings_ : has_punctual_tools_) = true;
     }
-    if (is_surface(description, range))
-      std::fill_n(look_.begin() + range.first(), range.count(), Look::kSurface);
+  }
+  // They are drawn as what they are.
+  for (std::size_t surface = 0; surface < surface_mat_.size(); ++surface) {
+    const std::uint32_t mat = surface_mat_[surface];
+    if (mat == msg::NO_INDEX) continue;
+    look_[mat] = Look::kSurface;
+    if (description.mat_kind()[mat] != msg::MAT_FIXED) moving_surfaces_.push_back(surface);
   }
   // A port of role liaison plays a mass.
   for (const msg::PortDescription& port : description.ports()) {
@@ -146,20 +146,17 @@ void ScenePainter::find_coloured_parts(const msg::SceneDescription& description)
   }
 }
 
-void ScenePainter::find_coloured_surfaces(const msg::SceneDescription& description) {
-  for (const msg::SurfaceDescription& surface : surfaces_) {
-    const auto range = std::ranges::find_if(
-        description.matter(),
-        [&surface](const msg::NamedRange& named) { return named.name() == surface.name(); });
-    const bool has_mat = range != description.matter().end();
-    const std::optional<Colour> colour = has_mat ? colours_.wanted(range->first()) : std::nullopt;
+void ScenePainter::find_coloured_surfaces() {
+  for (std::size_t surface = 0; surface < surfaces_.size(); ++surface) {
+    const std::uint32_t mat = surface_mat_[surface];
+    const std::optional<Colour> colour = mat != msg::NO_INDEX ? colours_.wanted(mat) : std::nullopt;
     if (!colour) {
       surface_colours_.push_back({palette_.surface, palette_.surface_edge});
       has_plain_surfaces_ = true;
       continue;
     }
     surface_colours_.push_back({*colour, mix(*colour, palette_.text, kEdgeShare)});
-    name_fixed({body_name(surface.name()), *colour, MatterMark::kSurface});
+    name_fixed({body_name(surfaces_[surface].name()), *colour, MatterMark::kSurface});
   }
 }
 
@@ -212,7 +209,16 @@ void ScenePainter::start(const msg::SceneFrame& frame) {
 
 Box ScenePainter::bounds(const msg::SceneFrame& frame, double outliers) const {
   CORDIS_ASSERT(outliers >= 0.0 && outliers <= 0.5);
-  return bounds_with(surfaces_, matter_bounds(frame, outliers), space_);
+  return bounds_with(surfaces_in(frame), matter_bounds(frame, outliers), space_);
+}
+
+std::vector<msg::SurfaceDescription> ScenePainter::surfaces_in(const msg::SceneFrame& frame) const {
+  std::vector<msg::SurfaceDescription> surfaces = surfaces_;
+  for (const std::size_t moving : moving_surfaces_) {
+    const Point place = point_of(frame, surface_mat_[moving]);
+    surfaces[moving].centre_m({place.begin(), place.end()});
+  }
+  return surfaces;
 }
 
 Box ScenePainter::matter_bounds(const msg::SceneFrame& frame, double outliers) const {
@@ -420,9 +426,9 @@ void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCa
                         const Box& home, const msg::SceneFrame& frame) {
   if (colour_by_ == ColourBy::kSpeed) measure_speeds(frame);
   project_all(options, camera, frame);
-  const std::vector<msg::SurfaceDescription> none;
-  const SurfacePainter surfaces(options.shows_surroundings ? surfaces_ : none, home, space_, camera,
-                                options.inner, options.mark_scale, surface_colours_);
+  const SurfacePainter surfaces(
+      options.shows_surroundings ? surfaces_in(frame) : std::vector<msg::SurfaceDescription>(),
+      home, space_, camera, options.inner, options.mark_scale, surface_colours_);
   canvas.begin_view(options.area, options.words);
   // A plane is a grid itself.
   if (options.shows_surroundings && (is_flat() || !has_planes_))

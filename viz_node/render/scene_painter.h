@@ -87,11 +87,13 @@ class ScenePainter {
     bool is_ball;
   };
 
+  /// The surfaces where they are in a frame.
+  std::vector<msg::SurfaceDescription> surfaces_in(const msg::SceneFrame& frame) const;
   Box matter_bounds(const msg::SceneFrame& frame, double outliers) const;
   void find_bodies(const msg::SceneDescription& description);
   void find_looks(const msg::SceneDescription& description);
   void find_coloured_parts(const msg::SceneDescription& description);
-  void find_coloured_surfaces(const msg::SceneDescription& description);
+  void find_coloured_surfaces();
   void find_patterns(const msg::SceneDescription& description);
   /// Gives a name in the legend to what looks like `body`.
   void name_fixed(const Body& body);
@@ -121,7 +123,9 @@ class ScenePainter {
   std::vector<LinePattern> link_pattern_;  // per link; empty where all are solid
   std::vector<LinkGroup> link_groups_;
   std::vector<msg::SurfaceDescription> surfaces_;
+  std::vector<std::uint32_t> surface_mat_;       // per surface
   std::vector<SurfaceColours> surface_colours_;  // per surface
+  std::vector<std::size_t> moving_surfaces_;     // surfaces that are driven
   bool has_plain_surfaces_ = false;
   bool has_planes_ = false;
   bool has_fixed_points_ = false;

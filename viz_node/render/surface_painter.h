@@ -1,4 +1,4 @@
-// viz_node/render/surface_painter.h -- the fixed surfaces of a scene in a view, and what they hide
+// viz_node/render/surface_painter.h -- the surfaces of a scene in a view, and what they hide
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// viz_node/render/surface_shape.h -- fixed surfaces of a scene as faces and edges, as in the page
+// viz_node/render/surface_shape.h -- surfaces of a scene as faces and edges, as in the page
 #pragma once
 
 #include <cstddef>

@@ -42,7 +42,7 @@ function kindName(ranges: NamedRange[], mat: number): string {
 export class Bodies {
   readonly list: Body[] = []; // with masses
   readonly colouredFixed: ColouredFixed[] = [];
-  readonly shapes: number[]; // fixed MATs that are surfaces: they are drawn as these
+  readonly shapes: number[]; // MATs that are surfaces: they are drawn as these
   readonly hasFixedPoints: boolean;
   readonly hasFixedBalls: boolean;
   readonly hasPorts: boolean;
@@ -77,9 +77,7 @@ export class Bodies {
       this.bodyOf.fill(numbers.get(body)!, first, first + count);
     }
     if (this.list.length === 0 && this.hasMass(0, matCount)) this.list.push({ name: 'mass', first: 0, number: 0, wanted: null });
-    const names = new Set(description.surfaces.map(({ name }) => name));
-    const ofShapes = description.matter.filter(({ name }) => names.has(name)); // of a polyline several
-    this.shapes = ofShapes.flatMap(({ first, count }) => Array.from({ length: count }, (_, i) => first + i));
+    this.shapes = description.surfaces.flatMap(({ mat }) => mat ?? []);
     const isPlain = (mat: number) => this.given.of(mat) === null;
     this.hasFixedPoints = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] === 0 && isPlain(mat) && !this.shapes.includes(mat));
     this.hasFixedBalls = kinds.some((kind, mat) => kind === MAT_FIXED && radii[mat] !== 0 && isPlain(mat));
@@ -127,17 +125,18 @@ export class Bodies {
     for (const { name, first: mat, count } of this.description.matter) {
       const wanted = this.given.of(mat);
       const key = `${bodyName(name)} ${wanted}`;
-      if (count === 0 || wanted === null || kinds[mat] !== MAT_FIXED || known.has(key)) continue;
+      if (count === 0 || wanted === null || known.has(key)) continue;
+      const isShape = this.shapes.includes(mat);
+      if (kinds[mat] !== MAT_FIXED && !isShape) continue;
       known.add(key);
-      const mark = this.shapes.includes(mat) ? 'surface' : radii[mat] === 0 ? 'fixed-point' : 'mass';
+      const mark = isShape ? 'surface' : radii[mat] === 0 ? 'fixed-point' : 'mass';
       this.colouredFixed.push({ mark, name: bodyName(name), wanted });
     }
   }
 
   /** The colours that the scene gives to its surfaces, in their order; null where it gives none. */
   get ofSurfaces(): (string | null)[] {
-    const mats = new Map(this.description.matter.map(({ name, first }) => [name, first]));
-    return this.description.surfaces.map(({ name }) => this.given.of(mats.get(name) ?? -1));
+    return this.description.surfaces.map(({ mat }) => (mat === null ? null : this.given.of(mat)));
   }
 
   /** The colour of a body as a theme shows it. */

@@ -93,11 +93,12 @@ export interface ColouredRange {
   colour: string; // #rrggbb
 }
 
-/** A fixed body of the scene that matter touches. */
+/** A body of the scene that matter touches: fixed, or driven by a function of time. */
 export interface Surface {
   name: string;
+  mat: number | null; // it is at `centre` in each frame; null: there is none
   kind: 'plane' | 'box' | 'cylinder' | 'segment';
-  centre: number[]; // x, y, z [m]; a point of a plane
+  centre: number[]; // x, y, z [m] at the start; a point of a plane
   axis: number[]; // unit vector: the normal of a plane on its outer side, the direction of a segment; empty for a box
   size: number[]; // box: edges x, y, z [m], 0 where it has no end; cylinder: radius, length; segment: length
 }

@@ -69,7 +69,7 @@ export class SceneView {
     readonly groups: LinkGroups,
     private readonly tools: number[],
     private readonly space: number,
-    private readonly surfaces: Surface[],
+    surfaces: Surface[],
     private palette: Palette,
     readonly quality: Quality,
     private readonly pose: Pose | null, // where the camera stood before, if it shall stay
@@ -93,9 +93,11 @@ export class SceneView {
     this.matter = this.matterShape();
     const vertices = { position: this.newest, previous: this.before, reference: this.reference };
     this.links = topology.linkCount > 0 ? new LinkView(topology, groups, vertices, this.uniforms, palette, quality.links) : null;
-    this.surfaceView = new SurfaceView(surfaces, bodies.ofSurfaces, space);
-    const mobile = [...topology.kinds.keys()].filter((mat) => topology.kinds[mat] !== MAT_FIXED);
-    this.trails = new Trails(mobile, palette);
+    const isMobile = (mat: number | null) => mat !== null && topology.kinds[mat] !== MAT_FIXED;
+    const driven = [...surfaces.keys()].filter((i) => isMobile(surfaces[i]!.mat));
+    this.surfaceView = new SurfaceView([...surfaces], driven, bodies.ofSurfaces, space);
+    const shapes = new Set(bodies.shapes);
+    this.trails = new Trails([...topology.kinds.keys()].filter((mat) => isMobile(mat) && !shapes.has(mat)), palette);
     this.forces = new NetForces(topology.masses);
     this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
@@ -133,6 +135,7 @@ export class SceneView {
     this.measureSpeed(this.shownForS);
     this.newestS = frame.simulatedS;
     this.trails.append((mat) => this.drawnPlace(mat));
+    this.followSurfaces();
     if (!this.framed) {
       this.framed = true;
       this.isDrum = this.liesFlat();
@@ -191,6 +194,10 @@ export class SceneView {
     this.colourBy(this.colouring);
     if (this.framed) this.layGround();
     this.changed();
+  }
+
+  private followSurfaces(): void {
+    this.surfaceView.follow((mat) => this.drawnPlace(mat));
   }
 
   private layGround(): void {
@@ -274,6 +281,7 @@ export class SceneView {
   measureFromNow(): void {
     if (Number.isNaN(this.newestS)) return;
     this.measureFrom(this.newest.array, this.newestS);
+    this.followSurfaces();
     this.trails.clear();
     this.colourBy(this.colouring);
   }
@@ -281,6 +289,7 @@ export class SceneView {
   /** Motion is drawn so many times as large as it is. */
   exaggerate(factor: number): void {
     this.uniforms.exaggeration = factor;
+    this.followSurfaces();
     this.trails.clear();
     this.changed();
   }
@@ -415,7 +424,7 @@ export class SceneView {
 
   /** What holds the surfaces and the MATs with their radii, but for this share of these at either end of each axis. */
   private bounds(outliers = 0, sample = SAMPLE): Box3 {
-    return boundsWith(this.surfaces, this.matterBounds(outliers, sample), this.space);
+    return boundsWith(this.surfaceView.surfaces, this.matterBounds(outliers, sample), this.space);
   }
 
   private matterBounds(outliers = 0, sample = SAMPLE): Box3 {

@@ -1,4 +1,4 @@
-// viz_node/web/page/surface_shape.ts -- fixed surfaces of a scene as faces and edges; likewise
+// viz_node/web/page/surface_shape.ts -- surfaces of a scene as faces and edges; likewise
 // viz_node/render/surface_shape.cpp for images.
 import { Box3, Vector3 } from 'three';
 import { roundLength } from './format.ts';

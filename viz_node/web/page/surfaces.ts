@@ -1,4 +1,4 @@
-// viz_node/web/page/surfaces.ts -- the fixed surfaces of a scene in the view: matte faces that are
+// viz_node/web/page/surfaces.ts -- the surfaces of a scene in the view: matte faces that are
 // seen from outside, and their edges.
 import type { Box3, Vector3 } from 'three';
 import { mixed, readable, sharesOf, type Palette } from './colours.ts';
@@ -26,12 +26,21 @@ export class SurfaceView {
   private readonly faces = shapeOf('triangles', COLOURED, { ...this.corners }, { isBehindLines: true, isOneSided: true });
   private readonly edges = shapeOf('lines', COLOURED, { ...this.ends });
   readonly shapes = [this.faces, this.edges];
+  private laid: { home: Box3; palette: Palette } | null = null; // what for
 
   constructor(
-    private readonly surfaces: Surface[],
+    readonly surfaces: Surface[], // where they are
+    private readonly moving: number[], // those that are driven
     private readonly given: (string | null)[], // colours of the scene
     private readonly space: number,
   ) {}
+
+  /** Puts those that are driven where their MATs are. */
+  follow(placeOf: (mat: number) => number[]): void {
+    if (this.moving.length === 0) return;
+    for (const i of this.moving) this.surfaces[i] = { ...this.surfaces[i]!, centre: placeOf(this.surfaces[i]!.mat!) };
+    if (this.laid !== null) this.lay(this.laid.home, this.laid.palette);
+  }
 
   /** True if one of them is a plane, which is drawn as a grid. */
   get hasPlanes(): boolean {
@@ -46,6 +55,7 @@ export class SurfaceView {
 
   /** Lays all of them around a scene in `home`. */
   lay(home: Box3, palette: Palette): void {
+    this.laid = { home, palette };
     const shapes = shapesOf(this.surfaces, home, this.space);
     const colours = this.given.map((wanted) => this.coloursOf(wanted, palette));
     const triangles = shapes.flatMap(({ faces }, number) =>
