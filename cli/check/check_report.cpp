@@ -65,6 +65,13 @@ std::string turning_text(const SceneCheck& check) {
   const plan::Turning& turning = check.plan.stability.turning;
   if (turning.liaison) {
     const scene::Called link = scene::call_liaison(check.scene, turning.liaison);
+    if (check.scene.network.dimension == 1) {
+      return fmt::format(
+          "            the energy of the scene may press {}{} to length 0,\n"
+          "            where its force turns about at once and motion without viscosity may gain\n"
+          "            energy; energy is watched during the run\n",
+          link.name, location(link));
+    }
     return fmt::format(
         "            the energy of the scene may press {}{} by more than a\n"
         "            quarter of its length, where it turns about so fast that motion without "

@@ -344,6 +344,56 @@ TEST(Energy, OfAPairWithAForceLimitIsTheIntegralOfItsTension) {
   }
 }
 
+/// What the pairs of the start store is not lost beside what springs store at a far range.
+TEST(Energy, OfPairsThatBeginWithinTheirRangeIsThatOfLinks) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {mass(0.01, Vec3(0, 0, 0)), mass(0.01, Vec3(0.002, 0, 0)),
+                mass(0.01, Vec3(0, 0.001, 0))};
+  LinkState spring;
+  spring.stiffness = 100.0;
+  scene.state_machines = {Behaving().state(spring).state_machine};
+  constexpr double kRest = 0.02;
+  NetworkDescription of_links = scene;
+  for (const auto& [a, b] : {std::pair{0U, 1U}, std::pair{0U, 2U}, std::pair{1U, 2U}})
+    of_links.state_links.push_back({a, b, 0, kRest});
+  engine::SetLiaison set;
+  set.set_p = {0, 1, 2};
+  set.range = 100.0;
+  set.rest_length = kRest;
+  scene.sets = {set};
+  World of_set = make_world(scene);
+  World linked = make_world(of_links);
+  for (int n = 0; n < 1000; ++n) {
+    ASSERT_NEAR(of_set.energy().elastic, linked.energy().elastic, 1e-9) << "step " << n;
+    ASSERT_NEAR(of_set.energy().largest, linked.energy().largest, 1e-9) << "step " << n;
+    of_set.step();
+    linked.step();
+  }
+}
+
+/// Nothing is in range at the start: what comes into range falls.
+TEST(Energy, OfPairsThatComeIntoRangeIsNoneBefore) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-4;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.06, 0, 0), Vec3(-1.0, 0, 0))};
+  LinkState spring;
+  spring.stiffness = 1.0;
+  scene.state_machines = {Behaving().state(spring).state_machine};
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = 0.05;
+  set.rest_length = 0.02;
+  scene.sets = {set};
+  World world = make_world(scene);
+  EXPECT_NEAR(world.energy().elastic, 0.0, 1e-15);
+  for (int n = 0; n < 400; ++n) world.step();
+  EXPECT_NEAR(world.energy().elastic, -0.5 * 0.03 * 0.03, 2e-5) << "near its rest";
+}
+
 /// Springs and laws far beyond their force limit: what they store is what their limited tension gives
 /// back, and viscosity only takes.
 TEST(Energy, OfALawWithAForceLimitIsTheIntegralOfItsTension) {

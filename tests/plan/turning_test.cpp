@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -111,6 +112,109 @@ TEST(Turning, IsThatOfLinksWithStatesThatPushToo) {
   EXPECT_TRUE(turning_stability(scene).turning.liaison.has_value());
   scene.state_machines[0].states[0].pushes = false;
   EXPECT_FALSE(turning_stability(scene).turning.liaison.has_value());
+}
+
+/// Masses that are all within range of each other, all their places times a scale, each pair at rest at 1 m.
+NetworkDescription crowd_at(double scale, int dimension, const engine::StateMachine& machine) {
+  NetworkDescription scene;
+  scene.dimension = dimension;
+  scene.step = 1e-3;
+  std::mt19937 random(2);
+  const auto place = [&] { return scale * static_cast<double>(random()) / 4294967296.0; };
+  engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    Vec3 position = Vec3::Zero();
+    for (int axis = 0; axis < dimension; ++axis) position[axis] = place();
+    scene.mats.push_back(mass(1.0, position));
+    set.set_p.push_back(i);
+  }
+  set.rest_length = 1.0;
+  set.range = 100.0;
+  scene.state_machines = {machine};
+  scene.sets = {set};
+  return scene;
+}
+
+TEST(Turning, OfACrumpledSetGainsEnergyBelowTheCertifiedStepAndIsToldBefore) {
+  for (const int dimension : {1, 2, 3}) {
+    SCOPED_TRACE(dimension);
+    const double scale = dimension == 1 ? 2.0 : 0.1;  // a row of masses that pass each other
+    NetworkDescription scene = crowd_at(scale, dimension, state_machine(kNetStiffness));
+    scene.step = 0.9 * turning_stability(scene).certified.step;
+    EXPECT_GT(turning_growth(scene), 10.0) << "what is not claimed to be stable";
+    const plan::Stability stability = turning_stability(scene);
+    EXPECT_TRUE(stability.holds()) << "each of its tangents is stable";
+    ASSERT_TRUE(stability.turning.liaison.has_value());
+    EXPECT_EQ(stability.turning.liaison->kind, engine::LiaisonKind::kSet);
+    EXPECT_DOUBLE_EQ(stability.turning.energy, kNetStiffness / (dimension == 1 ? 2.0 : 32.0));
+  }
+}
+
+TEST(Turning, OfASetIsHeldAgainstTheEnergyOfAllItsPairs) {
+  NetworkDescription scene = crowd_at(1.0, 2, state_machine(kNetStiffness));
+  scene.mats.resize(3);
+  scene.sets[0].set_p = {0, 1, 2};
+  scene.mats[0].position = Vec3(0, 0, 0);
+  scene.mats[1].position = Vec3(1, 0, 0);
+  scene.mats[2].position = Vec3(0.5, std::sqrt(0.75), 0);
+  EXPECT_FALSE(turning_stability(scene).turning.liaison.has_value());
+  for (engine::Mat& mat : scene.mats) mat.position *= 0.8;  // 20 J each
+  EXPECT_TRUE(turning_stability(scene).turning.liaison.has_value()) << "31.25 J";
+}
+
+TEST(Turning, IsThatOfLawsThatPushLikeASpring) {
+  using engine::Ring;
+  const engine::StateMachine lines[] = {
+      state_machine(0.0, engine::Power{kNetStiffness, 1.0}),
+      state_machine(0.0, engine::Rings{{Ring{kNetStiffness, 1.0}}}),
+      state_machine(0.0, engine::Table({-1.0, 1.0}, {-kNetStiffness, kNetStiffness})),
+      state_machine(0.5 * kNetStiffness, engine::Power{0.5 * kNetStiffness, 1.0})};
+  for (const engine::StateMachine& line : lines) {
+    const NetworkDescription crowd = crowd_at(0.1, 2, line);
+    EXPECT_NEAR(turning_stability(crowd).turning.energy, kNetStiffness / 32.0,
+                0.15 * kNetStiffness / 32.0);
+    EXPECT_TRUE(turning_stability(crowd).turning.liaison.has_value());
+    const NetworkDescription row = crowd_at(0.1, 1, line);
+    EXPECT_NEAR(turning_stability(row).turning.energy, kNetStiffness / 2.0, 0.05 * kNetStiffness);
+    NetworkDescription net = net_at(0.1, 2);
+    for (const engine::Link& link : net.links)
+      net.state_links.push_back({link.mat_a, link.mat_b, 0, link.rest_length});
+    net.links.clear();
+    net.state_machines = {line};
+    EXPECT_NEAR(turning_stability(net).turning.energy, kNetStiffness / 32.0,
+                0.15 * kNetStiffness / 32.0);
+  }
+  // So steep where it pushes that its push over the length never comes near its slope.
+  const auto balls = state_machine(0.0, engine::LennardJones{1.0, 1.0, 3.0});
+  EXPECT_TRUE(std::isinf(turning_stability(crowd_at(2.0, 2, balls)).turning.energy));
+  engine::StateMachine thread = state_machine(kNetStiffness);
+  thread.states[0].pushes = false;
+  EXPECT_TRUE(std::isinf(turning_stability(crowd_at(0.1, 2, thread)).turning.energy));
+}
+
+/// On a face the direction stays; at a corner it turns as about a point.
+TEST(Turning, OfASurfaceComesOfItsEdges) {
+  for (const bool has_edge : {false, true}) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = 1e-3;
+    scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.5, 0.5, 0))};
+    scene.surfaces.emplace_back();
+    scene.surfaces[0].mat = 0;
+    if (has_edge) {
+      scene.surfaces[0].kind = engine::SurfaceKind::kBox;
+      scene.surfaces[0].half_size = Vec3(0.1, 0.1, 0);
+    }
+    engine::SetLiaison set;
+    set.set_p = {0};
+    set.set_q = {1};
+    set.rest_length = 1.0;
+    set.range = 1.0;
+    scene.sets = {set};
+    scene.state_machines = {contact(kNetStiffness)};
+    EXPECT_EQ(turning_stability(scene).turning.energy,
+              has_edge ? kNetStiffness / 32.0 : std::numeric_limits<double>::infinity());
+  }
 }
 
 }  // namespace

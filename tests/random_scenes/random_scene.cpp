@@ -27,7 +27,8 @@ class SceneWriter {
         random_of_media_(seed ^ 0x1b873593U),
         random_of_bends_(seed ^ 0x9e3779b9U),
         random_of_polylines_(seed ^ 0x85ebca6bU),
-        random_of_lively_laws_(seed ^ 0x7feb352dU) {
+        random_of_lively_laws_(seed ^ 0x7feb352dU),
+        random_of_crowds_(seed ^ 0xd6e8feb8U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -48,6 +49,7 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
+    if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
   lively: {quantity: kinetic_energy}
@@ -660,6 +662,62 @@ step: {{rate_hz: {}, integrator: {}{}}}
     links_ += "  - {liaison: confines, between: [wall, \"p[0]\"], rest_m: 0.1}\n";
   }
 
+  double crowd_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_crowds_()) / 4294967296.0;
+  }
+
+  /// A spring, or a law like one, that holds every pair of a crowd at a distance.
+  std::string crowd_law(double stiffness, double rest) {
+    switch (random_of_crowds_() % 4) {
+      case 0:
+        return fmt::format("elasticity: {{kind: power, coefficient: {:.4g}, exponent: 1}}",
+                           stiffness);
+      case 1:
+        return fmt::format("elasticity: \"{:.4g} * elongation_m\"", stiffness);
+      case 2:
+        return fmt::format(
+            "elasticity: {{kind: rings, rings: [{{stiffness_n_per_m: {:.4g}, radius_m: {:.4g}}}]}}",
+            stiffness, rest);
+      default:
+        return fmt::format("stiffness_n_per_m: {:.4g}", stiffness);
+    }
+  }
+
+  /// In a tenth of the scenes masses that are all in range of each other, crumpled or not, without viscosity.
+  /// In most of these nothing else acts: what it gains does not hide in other energy.
+  void perhaps_add_crowd() {
+    const double choice = crowd_between(0.0, 1.0);
+    if (choice > 0.1) return;
+    if (choice < 0.07) {
+      liaisons_.clear();
+      links_.clear();
+    }
+    const auto count = static_cast<std::uint32_t>(2 + random_of_crowds_() % 19);
+    const double rest = crowd_between(0.01, 0.05);
+    const double half = rest * std::pow(100.0, crowd_between(-1.0, 0.0));
+    const double speed = crowd_between(0.0, 1.0) < 0.5 ? 0.0 : crowd_between(0.0, 0.3);
+    std::string places;
+    std::string speeds;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (auto* list : {&places, &speeds}) {
+        *list += i > 0 ? ", " : "";
+        if (space_ > 1) *list += "[";
+        for (int axis = 0; axis < space_; ++axis) {
+          const double most = list == &places ? half : speed;
+          *list += fmt::format("{}{:.5g}", axis > 0 ? ", " : "", crowd_between(-most, most));
+        }
+        if (space_ > 1) *list += "]";
+      }
+    }
+    masses_ += fmt::format(
+        "  crowd: {{kind: points, at_m: [{}], mass_kg: 0.002, velocity_m_per_s: [{}]}}\n", places,
+        speeds);
+    const double stiffness = 10.0 * std::pow(100.0, crowd_between(0.0, 1.0));
+    liaisons_ += "  of_crowd: {kind: state_machine, " + crowd_law(stiffness, rest) + "}\n";
+    links_ += fmt::format(
+        "  - {{liaison: of_crowd, within: crowd, rest_m: {:.4g}, range_m: 100}}\n", rest);
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -791,6 +849,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_bends_;      // likewise
   std::mt19937 random_of_polylines_;  // likewise
   std::mt19937 random_of_lively_laws_;  // likewise
+  std::mt19937 random_of_crowds_;       // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   int space_ = 3;

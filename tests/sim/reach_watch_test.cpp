@@ -314,6 +314,25 @@ links:
   EXPECT_FALSE(seen.is_beyond_reach);
 }
 
+/// Likewise the pairs of a set, whose range is far.
+TEST(ReachWatch, LetsGoWhereThePairsOfASetTurnAbout) {
+  const std::string crumpled = R"(cordis: 1
+name: crumpled
+space: 2
+step: {rate_hz: 55, gesture_rate_hz: 55}
+liaisons: {k: {kind: state_machine, stiffness_n_per_m: 500}}
+matter:
+  m: {kind: points, mass_kg: 1, at_m: [[0, 0], [0.1, 0.02], [0.03, 0.11], [0.12, 0.09]]}
+links: [{liaison: k, within: m, rest_m: 1, range_m: 100}]
+)";
+  const auto loaded = loaded_scene_of(crumpled);
+  EXPECT_TRUE(loaded->is_certain);
+  EXPECT_TRUE(loaded->may_turn);
+  const Alone seen = play_alone(crumpled, 20.0);
+  EXPECT_EQ(seen.bound, PassedBound::kEnergy);
+  EXPECT_FALSE(seen.is_beyond_reach);
+}
+
 /// A hand may bring in what turns them, later.
 TEST(ReachWatch, IsOfLinksThatHaveTooLittleEnergyToTurnToo) {
   const auto loaded = loaded_scene_of(R"(cordis: 1

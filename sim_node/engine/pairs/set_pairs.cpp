@@ -784,19 +784,32 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
   return work;
 }
 
-/// Adds the energy of a pair, less what it has where it comes into range, in all states.
+/// Adds the energy of a pair, and what it has where it comes into range, in all states.
 void SetPairs::add_potential(const StateTable& table, StateIndex state, std::size_t a,
                              std::size_t b, double distance, double rest_length,
-                             double& sum) const noexcept {
+                             Potential& sum) const noexcept {
   const EndMasses mass = state_machines_.masses_of(a, b);
-  sum += table.stored_energy(state, distance, rest_length, mass);
-  // Beyond the range there is no force, and the potential is 0; that of Lennard-Jones is 0 far away.
+  sum.stored += table.stored_energy(state, distance, rest_length, mass);
+  // That of Lennard-Jones is 0 far away.
   if (path_ == Path::kLennardJones) return;
-  sum -= table.stored_energy(state_machines_.start_state(), range_, rest().length(a, b), mass);
+  sum.at_range +=
+      table.stored_energy(state_machines_.start_state(), range_, rest().length(a, b), mass);
 }
 
+/// Beyond the range there is no force: a pair has there what it has at the range. So the sum is 0 with all
+/// pairs beyond it. Where the pairs of the start store less by their laws, they count as those do, and the sum is
+/// 0 where they store nothing: what they store is not lost beside that of the range.
 double SetPairs::stored_energy(const StateTable& table) noexcept {
-  double sum = friction_.stored_energy();
+  const Potential sum = potential(table);
+  if (!zero_) {
+    const bool is_less = std::abs(sum.stored) < std::abs(sum.stored - sum.at_range);
+    zero_ = is_less && std::isfinite(sum.at_range) ? sum.at_range : 0.0;
+  }
+  return friction_.stored_energy() + sum.stored + (*zero_ - sum.at_range);
+}
+
+SetPairs::Potential SetPairs::potential(const StateTable& table) noexcept {
+  Potential sum;
   const PairStates& states = state_machines_.states();
   const StateIndex start = state_machines_.start_state();
   const auto distance = [this](std::size_t a, std::size_t b) {

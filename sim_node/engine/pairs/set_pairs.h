@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "node/assert.h"
@@ -88,7 +89,8 @@ class SetPairs {
 
   /// What the forces of the last call have done since, up to the present positions.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
-  /// Potential energy [J] of the pairs at the positions of the last call, in closed form.
+  /// Potential energy [J] of the pairs at the positions of the last call, in closed form. The first call, as
+  /// the world starts, chooses where it is 0.
   double stored_energy(const StateTable& table) noexcept;
 
   /// What this set has put on the first group of a contact by the second one in the last step [N].
@@ -199,8 +201,14 @@ class SetPairs {
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
   void pad_at_surfaces() noexcept;
+  /// Energies of all pairs [J].
+  struct Potential {
+    double stored = 0.0;
+    double at_range = 0.0;  // what they have where they come into range
+  };
+  Potential potential(const StateTable& table) noexcept;
   void add_potential(const StateTable& table, StateIndex state, std::size_t a, std::size_t b,
-                     double distance, double rest_length, double& sum) const noexcept;
+                     double distance, double rest_length, Potential& sum) const noexcept;
   void find_rest_lengths(PairBlock& block) const noexcept;
   PairRows measure(const MemberColumns& members, PairBlock& block) noexcept;
   void find_factors(const PairStep& step, const MemberColumns& members, const double* slid,
@@ -242,6 +250,7 @@ class SetPairs {
   AlignedVector<double> force_;    // and as fourth value the number of partners
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
+  std::optional<double> zero_;  // added to the stored energy [J]
   ActivePairs active_;
   PartnerCount largest_partners_;
   std::size_t chunk_ = 0;          // members whose works are summed together

@@ -39,20 +39,6 @@ bool never_falls(const engine::Law& law) {
          tension(table->argument().back()) >= 0.0;
 }
 
-/// What a state pulls at a distance at rest, as weakly or as strongly as any masses of the reach have it
-/// [N].
-Interval tension_at(const engine::LinkState& state, double distance, double rest_length,
-                    const Reach& reach) {
-  const double elongation = distance - rest_length;
-  const Interval law = tension_between(state.elasticity, distance, elongation, reach);
-  const auto clamped = [&](double tension) {
-    const double spring = state.stiffness * elongation + tension;
-    return std::clamp(spring, state.pushes ? -state.force_limit : 0.0,
-                      state.pulls ? state.force_limit : 0.0);
-  };
-  return {clamped(law.low), clamped(law.high)};
-}
-
 /// Distances between which a law is summed up, from one on to an end, near each other at first.
 class Way {
  public:
@@ -149,6 +135,18 @@ double scale_of(double distance, double rest_length, const engine::LinkState& st
 }
 
 }  // namespace
+
+Interval tension_at(const engine::LinkState& state, double distance, double rest_length,
+                    const Reach& reach) {
+  const double elongation = distance - rest_length;
+  const Interval law = tension_between(state.elasticity, distance, elongation, reach);
+  const auto clamped = [&](double tension) {
+    const double spring = state.stiffness * elongation + tension;
+    return std::clamp(spring, state.pushes ? -state.force_limit : 0.0,
+                      state.pulls ? state.force_limit : 0.0);
+  };
+  return {clamped(law.low), clamped(law.high)};
+}
 
 double fall_of(const engine::LinkState& state, double rest_length, const Span& span,
                const Reach& reach) {

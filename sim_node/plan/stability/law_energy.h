@@ -14,6 +14,11 @@ struct Span {
   double highest;  ///< [m]; infinity likewise
 };
 
+/// What a state pulls at a distance at rest, within its limits, as weakly or as strongly as any masses of the
+/// reach have it [N].
+Interval tension_at(const engine::LinkState& state, double distance, double rest_length,
+                    const Reach& reach);
+
 /// The most that the potential of a state falls from where it starts [J], as it pulls and pushes at
 /// rest; infinite where it falls without an end. O(1), about 1000 tensions.
 /// @param rest_length  [m]

@@ -163,8 +163,37 @@ double flips_at(const NetworkDescription& network, const engine::SetLiaison& set
   return largest;
 }
 
-void add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
-             LiaisonGraph& graph) {
+/// The least rest length of a pair that has one [m]; 0: none has.
+double shortest_rest(const NetworkDescription& network, const engine::SetLiaison& set) {
+  if (set.rest_length >= 0.0) return set.rest_length;
+  const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
+  const double both = smallest_radius(network, set.set_p) + smallest_radius(network, others);
+  if (both > 0.0) return both;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto* half : {&set.set_p, &set.set_q}) {
+    for (const std::uint32_t mat : *half) {
+      const double radius = radius_of(network, mat);
+      if (radius > 0.0) least = std::min(least, radius);
+    }
+  }
+  return std::isfinite(least) ? least : 0.0;
+}
+
+/// What brings a pair of a set so far inwards that it turns about [J].
+double energy_of_turning(const NetworkDescription& network, const engine::SetLiaison& set,
+                         const Reach& reach) {
+  const bool on_surfaces = engine::acts_on_surfaces(network, set);
+  if (on_surfaces && network.dimension == 1) return std::numeric_limits<double>::infinity();
+  const WayInwards way{.rest_length = shortest_rest(network, set),
+                       .farthest = set.range,
+                       .turns_at = on_surfaces ? flips_at(network, set) : 0.0,
+                       .passes = network.dimension == 1};
+  return energy_of_turning(network.state_machines[set.state_machine], way, reach);
+}
+
+/// @return what all of its pairs store at the start, and what each member may gain in one of them [J]
+double add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
+               LiaisonGraph& graph) {
   const engine::SetLiaison& set = network.sets[index];
   const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
   const double rest = set.rest_length >= 0.0
@@ -175,11 +204,14 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const StartPairs near(network, set);
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
   double stored = 0.0;  // in the pair that stores the most
+  double in_all = 0.0;
   double across = 0.0;
   double nearest = set.range;
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint start = start_point(network, set, pair);
-    stored = std::max(stored, stored_in(state_machine, start));
+    const double in_pair = stored_in(state_machine, start);
+    stored = std::max(stored, in_pair);
+    in_all += in_pair;
     nearest = std::min(nearest, pair.distance);
     if (!on_surfaces)
       across = std::max(across, stiffness_across_at(state_machine, network.dimension, start));
@@ -210,6 +242,23 @@ void add_set(const NetworkDescription& network, std::uint32_t index, const Reach
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
   if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
+  if (!near.are_kept()) return std::numeric_limits<double>::infinity();
+  if (!std::isfinite(fall)) return in_all;
+  return in_all + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+}
+
+/// Adds the sets to what turns about, and to the energy there is for it what they store.
+/// @param stored  by all sets [J]
+Turning turning_with_sets(const NetworkDescription& network, Reach reach, double stored) {
+  if (!reach.counts_sets) reach.brought += stored;
+  Turning turning = turning_of(network, reach);
+  for (std::uint32_t index = 0; index < network.sets.size(); ++index) {
+    const engine::SetLiaison& set = network.sets[index];
+    const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
+    const Reach here = reach_between(reach, network, set.set_p, others);
+    add_turning({LiaisonKind::kSet, index}, energy_of_turning(network, set, here), here, turning);
+  }
+  return turning;
 }
 
 }  // namespace
@@ -290,7 +339,6 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         {link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index++}});
   }
   const Reach reach = reach_of(network, reach_factor);
-  graph.turning = turning_of(network, reach);
   index = 0;
   SlopesOfLinks slopes(network, reach);
   for (const engine::StateLink& link : network.state_links) {
@@ -318,7 +366,10 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
   for (index = 0; index < network.bends.size(); ++index) {
     add_bend(network.bends[index], index, graph);
   }
-  for (index = 0; index < network.sets.size(); ++index) add_set(network, index, reach, graph);
+  double stored = 0.0;
+  for (index = 0; index < network.sets.size(); ++index)
+    stored += add_set(network, index, reach, graph);
+  graph.turning = turning_with_sets(network, reach, stored);
   if (reach.endless && !graph.bounded && !graph.uncertainty) {
     graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
   }

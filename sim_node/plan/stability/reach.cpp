@@ -187,6 +187,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.pushed = factor * driven * extent_of(network);
   reach.force = driven + weight_of(network);
   reach.brought = factor * energy + reach.pushed;
+  reach.counts_sets = needs_energy(network);
   reach.energy *= factor;
   reach.speed *= std::sqrt(factor);
   return reach;

@@ -21,6 +21,7 @@ struct Reach {
   double pushed = 0.0;   ///< by driven forces through the scene [J]
   Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
+  bool counts_sets = false;   ///< what sets store at the start is in `brought`
   bool held = false;          ///< a port holds an end, so that no energy limits the elongation
   double force = 0.0;         ///< force of all drives and all weights [N]
   double inverse_mass = 0.0;  ///< the largest 1 / m of each end, added up [1/kg]
