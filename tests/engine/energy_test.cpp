@@ -344,6 +344,52 @@ TEST(Energy, OfAPairWithAForceLimitIsTheIntegralOfItsTension) {
   }
 }
 
+/// What a law of distance and speed pulls at rest is elastic, the rest of it damping.
+TEST(Energy, OfALawOfDistanceAndSpeedIsThatOfItAtRest) {
+  for (const auto integrator : {engine::IntegratorKind::kCordis, engine::IntegratorKind::kLeapfrog,
+                                engine::IntegratorKind::kImplicit}) {
+    for (const bool as_set : {false, true}) {
+      for (const bool pulls : {true, false}) {
+        SCOPED_TRACE(std::string(engine::to_string(integrator)) + (as_set ? " set" : " link") +
+                     (pulls ? "" : " that pushes"));
+        LinkState law;
+        law.elasticity = expression_law(Term(20.0) * q(Quantity::kElongation) +
+                                        Term(0.001) * q(Quantity::kSpeed));
+        law.pulls = pulls;
+        NetworkDescription scene;
+        scene.dimension = 1;
+        scene.step = 1e-4;
+        scene.integrator = integrator;
+        scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.09, 0, 0), Vec3(-1.0, 0, 0))};
+        scene.state_machines = {Behaving().state(law).state_machine};
+        engine::SetLiaison set;
+        set.set_p = {0};
+        set.set_q = {1};
+        set.range = 1.0;
+        set.rest_length = 0.1;
+        if (as_set) {
+          scene.sets = {set};
+        } else {
+          scene.state_links = {{0, 1, 0, 0.1}};
+        }
+        World world = make_world(scene);
+        const double start = world.energy().total();
+        EXPECT_NEAR(start, 0.005 + 0.5 * 20.0 * 0.01 * 0.01, 1e-7);
+        double before = 0.0;
+        for (int n = 0; n < 1500; ++n) {
+          world.step();
+          const Energy energy = world.energy();
+          ASSERT_LT(std::abs(energy.integration_error()), 0.03 * start) << "step " << n;
+          ASSERT_GT(energy.dissipated, before - 1e-2 * start) << "step " << n;
+          ASSERT_LT(energy.dissipated, start) << "step " << n;
+          before = energy.dissipated;
+        }
+        EXPECT_GT(before, 1e-4 * start);
+      }
+    }
+  }
+}
+
 /// What the pairs of the start store is not lost beside what springs store at a far range.
 TEST(Energy, OfPairsThatBeginWithinTheirRangeIsThatOfLinks) {
   NetworkDescription scene;

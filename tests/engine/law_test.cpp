@@ -102,14 +102,12 @@ TEST(Law, IsTheSlopeOfItsPotential) {
     for (int i = 0; i < 20; ++i) {
       const double e = between(random, -0.45, 1.0);
       const double slope = (energy(e + kStep) - energy(e - kStep)) / (2.0 * kStep);
-      if (!stores_energy(law)) {
-        ASSERT_EQ(slope, 0.0);
-        continue;
-      }
-      // The mean of the tension between the two, which rounding of the energy blurs.
+      if (!stores_energy(law) && tension(e) == 0.0) continue;  // beyond where it has a value
+      // The mean of the tension between the two, which rounding of the energy blurs, or its quadrature.
+      const double blur = stores_energy(law) ? 1e-9 : 1e-3;
       const double change =
           std::abs(tension(e + kStep) - tension(e)) + std::abs(tension(e) - tension(e - kStep));
-      ASSERT_NEAR(slope, tension(e), change + 1e-9 * (1.0 + std::abs(energy(e)))) << "at " << e;
+      ASSERT_NEAR(slope, tension(e), change + blur * (1.0 + std::abs(energy(e)))) << "at " << e;
     }
   });
 }

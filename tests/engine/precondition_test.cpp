@@ -56,7 +56,6 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
   plane.integrator = IntegratorKind::kModal;
   ConnectedComponents components(world.network().description(), std::vector<std::uint32_t>{0, 1});
   const std::vector<std::uint32_t> no_such_link = {7};
-  const Expression of_speed{test::q(Quantity::kSpeed).program};
   SetLiaison smooth;
   NetworkDescription with_set = small_network();
   PairFriction friction(with_set, smooth, 4, 4);
@@ -78,7 +77,6 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"sets", [&] { world.bound_pairs(0); }},
       {"sets", [&] { world.largest_partners(0); }},
       {"sets", [&] { world.partners_of(0, 0); }},
-      {"is_potential", [&] { of_speed.potential({}); }},
       {"acts", [&] { friction.recall(no_pairs); }},
       {"state_links", [&] { is_idle(world, 1); }},
       {"links", [&] { components.find_joined(world, {}, no_such_link); }},

@@ -20,8 +20,8 @@ bool may_push_along(const Law& dissipation) noexcept {
 }
 
 bool may_drive(const LinkState& state) noexcept {
-  const bool asks_for_speed =
-      !stores_energy(state.elasticity) && potential_expression(state.elasticity) == nullptr;
+  const auto* expression = std::get_if<Expression>(&state.elasticity);
+  const bool asks_for_speed = expression != nullptr && !expression->is_potential();
   return asks_for_speed || may_push_along(state.dissipation);
 }
 

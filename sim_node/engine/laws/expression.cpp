@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/laws/quadrature.h"
 #include "sim_node/engine/laws/scalar_tension.h"
@@ -44,7 +43,6 @@ double Expression::distance_of_no_potential(const LawPoint& link) const noexcept
 }
 
 double Expression::potential(const LawPoint& link) const noexcept {
-  CORDIS_ASSERT(is_potential());
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double argument) {
     return scalar_tension(*this, {argument, argument - rest_length, 0.0, link.mass_a, link.mass_b},

@@ -55,17 +55,12 @@ double viscous_tension(const Law& law, const LawPoint& link) noexcept {
 double potential(const Law& law, const LawPoint& link) noexcept {
   const auto potential_of_type = [&]<class Type>(const Type& alternative) {
     if constexpr (std::is_same_v<Type, Expression>) {
-      return alternative.is_potential() ? alternative.potential(link) : 0.0;
+      return alternative.potential(link);
     } else {
       return alternative.potential(link.distance, link.elongation);
     }
   };
   return std::visit(potential_of_type, law);
-}
-
-const Expression* potential_expression(const Law& law) noexcept {
-  const auto* expression = std::get_if<Expression>(&law);
-  return expression != nullptr && expression->is_potential() ? expression : nullptr;
 }
 
 LawSlope largest_slope(const Law& law, const LawRange& range) noexcept {

@@ -65,10 +65,8 @@ double viscous_tension(const Law& law, const LawPoint& link) noexcept;
 
 /// Energy [J] whose slope over the distance is the tension of the law: 0 at the elongation 0 for a
 /// table or a power, 0 at its cutoff (or far away) for Lennard-Jones, 0 outside all rings;
-/// Expression::potential() for an expression, and 0 if it has none.
+/// Expression::potential() for an expression.
 double potential(const Law& law, const LawPoint& link) noexcept;
-/// An expression that has a potential, else null.
-const Expression* potential_expression(const Law& law) noexcept;
 
 LawSlope largest_slope(const Law& law, const LawRange& range) noexcept;
 /// What an elasticity pulls at an elongation as small as this one, over it, where it is least

@@ -39,7 +39,7 @@ struct LawArguments {
 struct LawTerm {
   std::uint32_t type = 0;      ///< its place in Law; 0: no law
   bool stores_energy = true;   ///< kStoresEnergy of its type
-  bool is_potential = false;   ///< an expression that has a potential
+  bool asks_speed = false;     ///< an expression that asks for the speed
   const void* term = nullptr;  ///< Term of its type
 };
 

@@ -162,11 +162,15 @@ class StateMachineLoop {
     keep(group, tension, elastic);
   }
 
-  /// Adds what an expression pulls; to the part that stores energy if it has a potential.
-  static void add_expression(const LawTerm& law, const LawArguments& law_arguments, double* tension,
+  /// Adds what an expression pulls, and to the part that stores energy what it pulls at rest.
+  static void add_expression(const LawTerm& law, LawArguments law_arguments, double* tension,
                              double* elastic) noexcept {
-    if (!law.is_potential) {
+    if (law.asks_speed) {
       LawLoop<Lanes>::add(law, law_arguments, tension);
+      alignas(64) double no_speed[Batch::kRows];
+      Batch::fill(no_speed, 0.0);
+      law_arguments.speed = no_speed;
+      LawLoop<Lanes>::add(law, law_arguments, elastic);
       return;
     }
     alignas(64) double value[Batch::kRows];

@@ -70,7 +70,7 @@ double energy_of_half(const LennardJones& balls, bool pulls, double distance) no
 /// From where the energy of a law is integrated that has a limit [m]: there it is within the limit.
 /// Ends that meet in 1 dimension pass each other: what one-sided rings store counts from one side on both.
 double begin_of_integral(const Law& law, const LawPoint& link, const StateTerm& term) noexcept {
-  if (const Expression* expression = potential_expression(law))
+  if (const auto* expression = std::get_if<Expression>(&law))
     return expression->distance_of_no_potential(link);
   if (argument_of(law) != LawArgument::kDistance) return link.distance - link.elongation;
   const double range = range_of(law);
@@ -93,10 +93,12 @@ namespace {
 
 /// Precondition: the law lives as long as what is made of it.
 ReadyLaw ready(const Law& law) {
-  const auto make = [&law](const auto& alternative) -> ReadyLaw {
+  const auto* expression = std::get_if<Expression>(&law);
+  const bool asks_speed = expression != nullptr && !expression->is_potential();
+  const auto make = [&](const auto& alternative) -> ReadyLaw {
     const auto term = std::make_shared<const decltype(alternative.term())>(alternative.term());
-    return {{static_cast<std::uint32_t>(law.index()), alternative.kStoresEnergy,
-             potential_expression(law) != nullptr, term.get()},
+    return {{static_cast<std::uint32_t>(law.index()), alternative.kStoresEnergy, asks_speed,
+             term.get()},
             term};
   };
   return std::visit(make, law);
@@ -172,10 +174,8 @@ void StateTable::Content::add_state(const LinkState& state,
     laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
     *target = laws.back().term;
   }
-  const bool has_potential = stores_energy(state.elasticity) || term.elasticity.is_potential;
-  term.limits_elastic =
-      state.force_limit < kUnlimited ||
-      (term.one_sided && has_potential && !clamps_with_elongation(state.elasticity));
+  term.limits_elastic = state.force_limit < kUnlimited ||
+                        (term.one_sided && !clamps_with_elongation(state.elasticity));
   term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
@@ -270,8 +270,7 @@ double StateTable::stored_energy(StateIndex index, double distance, double rest_
 double StateTable::limited_energy(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
   const Law& law = state(index).elasticity;
-  if (is_none(law) || (!stores_energy(law) && potential_expression(law) == nullptr))
-    return energy_of_limited_spring(term, link.elongation);
+  if (is_none(law)) return energy_of_limited_spring(term, link.elongation);
   const auto* balls = std::get_if<LennardJones>(&law);
   const bool is_limited = std::isfinite(state(index).force_limit);
   // A distance below 0, in 1 dimension, has a tension of the other sign.

@@ -51,7 +51,7 @@ class StateTable {
   std::uint32_t slot_count() const noexcept;  ///< one more than the largest slot used
 
   /// Energy [J] that a row stores in a state: closed form of the linear part and of the law, by
-  /// quadrature of an expression that has a potential, and 0 of another. In a state with a force
+  /// quadrature of an expression at rest. In a state with a force
   /// limit, or that does not pull (push), it is the integral of the limited elastic tension.
   /// Lennard-Jones: 0 at its cutoff.
   double stored_energy(StateIndex state, double distance, double rest_length,
