@@ -16,6 +16,7 @@
 #include "tests/engine/many_states.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -314,7 +315,7 @@ NetworkDescription random_damped_network(std::uint64_t seed, int dimension, doub
 TEST(Overdamped, RandomNetworksOfOneDimensionFollowTheMatrixExponential) {
   double worst = 0.0;
   int compared = 0;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < 200; seed += kSeedStride) {
     const NetworkDescription scene = random_damped_network(seed, 1, 1e-3);
     if (!engine::damps_implicitly(scene)) continue;
     NetworkDescription half = scene;
@@ -327,7 +328,7 @@ TEST(Overdamped, RandomNetworksOfOneDimensionFollowTheMatrixExponential) {
     EXPECT_GT(error / settled_errors(half).position, 2.5) << seed;
   }
   std::printf("worst error of a random network %.1e; second order shown by %d\n", worst, compared);
-  EXPECT_GT(compared, 50);
+  EXPECT_GT(compared, rounds(50));
 }
 
 /// Positions of all MATs after 0.1 s.
@@ -342,7 +343,7 @@ Eigen::MatrixXd end_of(NetworkDescription scene, double step) {
 // turn in a step becomes small.
 TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
   int compared = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < 40; seed += kSeedStride) {
     NetworkDescription scene = random_damped_network(seed, 2, 3.125e-5);
     if (!engine::damps_implicitly(scene)) continue;
     const Eigen::MatrixXd truth = end_of(scene, 7.8125e-6);
@@ -355,7 +356,7 @@ TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
     ++compared;
     EXPECT_GT(coarse / error(3.125e-5), 8.0) << seed;  // 16 at second order
   }
-  EXPECT_GT(compared, 20);
+  EXPECT_GE(compared, rounds(20));
 }
 
 TEST(Overdamped, AccountsForWhatDampersTakeToRounding) {
@@ -484,7 +485,7 @@ double largest_eigenvalue(const NetworkDescription& scene, double weight) {
 
 TEST(OverdampedStability, OfPencilsThatShareNoModesHoldsBelowTheLimitOfStiffnessAlone) {
   int diverging = 0;
-  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+  for (std::uint64_t seed = 0; seed < 150; seed += kSeedStride) {
     NetworkDescription scene = random_pencil(seed);
     const double stiffest = largest_eigenvalue(scene, 0.0);
     if (stiffest == 0.0 || !engine::damps_implicitly(scene)) continue;
@@ -504,7 +505,7 @@ TEST(OverdampedStability, OfPencilsThatShareNoModesHoldsBelowTheLimitOfStiffness
     ++diverging;
     EXPECT_GT(largest_excursion(scene, 20000), 1e6) << seed;
   }
-  EXPECT_GT(diverging, 100);
+  EXPECT_GT(diverging, rounds(100));
 }
 
 /// A mass of 1 kg on a damper and a link of dry friction to a port that moves at 1 m/s.

@@ -10,6 +10,7 @@
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
 #include "tests/engine/surfaces.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -131,7 +132,8 @@ TEST(WhereMethodsFail, ModalNearItsNyquistFrequencyUnderALoadThatCordisBears) {
 constexpr double kLoad = 10.0;
 constexpr double kMu = 0.5;
 constexpr double kPush = 4.0;
-constexpr int kStandstill = 1'000'000;  // steps of 0.1 ms
+constexpr int kStandstill = rounds(1'000'000);  // steps of 0.1 ms
+constexpr double kHalf = 0.5e-4 * kStandstill;  // [s]
 
 struct Standstill {
   double creep = 0.0;    // way of the second half [m]
@@ -173,12 +175,12 @@ Standstill standstill_by_law(IntegratorKind integrator, double full_at) {
 TEST(WhereMethodsFail, LawsOfTheSpeedCreepOrChatterWhereFrictionSticks) {
   // Stable with `cordis` where Z' = 5 N / full_at * dt / m < 2.
   const Standstill gentle = standstill_by_law(IntegratorKind::kCordis, 1e-3);
-  EXPECT_NEAR(gentle.creep, 0.8e-3 * 50.0, 1e-6);
+  EXPECT_NEAR(gentle.creep, 0.8e-3 * kHalf, 1e-6);
   EXPECT_LT(gentle.chatter, 0.81e-3);
   const Standstill steep = standstill_by_law(IntegratorKind::kCordis, 1e-5);
   EXPECT_GT(steep.chatter, 10.0 * 1e-5);
   const Standstill solved = standstill_by_law(IntegratorKind::kLeapfrog, 1e-5);
-  EXPECT_NEAR(solved.creep, 0.8e-5 * 50.0, 1e-8);
+  EXPECT_NEAR(solved.creep, 0.8e-5 * kHalf, 1e-8);
   EXPECT_LT(solved.chatter, 0.81e-5);
 
   for (const double kinetic : {0.5, 0.3}) {

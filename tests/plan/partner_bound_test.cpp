@@ -9,6 +9,7 @@
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate.h"
 #include "tests/plan/networks.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -198,7 +199,7 @@ TEST(Partners, MakeTheRateOfACrowdHighEnough) {
   const double before = world.energy().total();
   double most = before;  // below 0: the pairs would be free beyond their range
   double swing = 0.0;
-  for (int n = 0; n < 5000; ++n) {
+  for (int n = 0; n < rounds(5000); ++n) {
     world.step();
     const engine::Energy energy = world.energy();
     most = std::max(most, energy.kinetic + energy.elastic);

@@ -13,4 +13,7 @@ constexpr int rounds(int all) noexcept {
 #endif
 }
 
+/// From one seed to the next that a test tries. It is odd, so that kinds of scenes that alternate all come.
+constexpr unsigned kSeedStride = rounds(9) == 9 ? 1 : 9;
+
 }  // namespace cordis::test
