@@ -14,6 +14,7 @@
 #include "cli/simulate/simulate.h"
 #include "node/config/count_text.h"
 #include "node/terminal_text.h"
+#include "sim_node/run/thread_count.h"
 
 namespace cordis::cli {
 namespace {
@@ -38,7 +39,7 @@ std::string report_of(const SimulateResult& result) {
 /// @return 0 for `auto`
 std::size_t thread_count_of(const std::string& word) {
   if (word.empty() || word == "auto") return 0;
-  return static_cast<std::size_t>(parse_whole_number("--threads", word, 1, 256));
+  return static_cast<std::size_t>(parse_whole_number("--threads", word, 1, sim::kMaxThreads));
 }
 
 int run(const SimulateOptions& options) {

@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <string>
 
+#include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::sim {
 
-inline constexpr std::size_t kFastest = 0;       ///< as many threads as are fastest
-inline constexpr std::size_t kMaxThreads = 256;  ///< largest value of `threads`
+inline constexpr std::size_t kFastest = 0;  ///< as many threads as are fastest
+/// Largest value of `threads`.
+inline constexpr std::size_t kMaxThreads = engine::ThreadTeam::kMaxMembers;
 
 /// How many threads share a step now, and why, for a person; empty where there was no choice.
 struct SharedSteps {

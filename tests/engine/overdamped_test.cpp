@@ -343,7 +343,7 @@ Eigen::MatrixXd end_of(NetworkDescription scene, double step) {
 // turn in a step becomes small.
 TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
   int compared = 0;
-  for (std::uint64_t seed = 0; seed < 40; seed += kSeedStride) {
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
     NetworkDescription scene = random_damped_network(seed, 2, 3.125e-5);
     if (!engine::damps_implicitly(scene)) continue;
     const Eigen::MatrixXd truth = end_of(scene, 7.8125e-6);
@@ -356,7 +356,7 @@ TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
     ++compared;
     EXPECT_GT(coarse / error(3.125e-5), 8.0) << seed;  // 16 at second order
   }
-  EXPECT_GE(compared, rounds(20));
+  EXPECT_GT(compared, 20);
 }
 
 TEST(Overdamped, AccountsForWhatDampersTakeToRounding) {

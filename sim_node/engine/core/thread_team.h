@@ -16,6 +16,9 @@ namespace cordis::engine {
 /// Its members have the floating-point mode of FloatMode and take no signals.
 class ThreadTeam {
  public:
+  /// Threads for which a step is laid out: larger teams share no sets.
+  static constexpr std::size_t kMaxMembers = 256;
+
   /// @param member_count  threads, the caller included. Precondition: at least 1.
   /// @throws std::system_error when the system gives no more threads
   explicit ThreadTeam(std::size_t member_count);
@@ -49,7 +52,11 @@ class ThreadTeam {
     std::size_t last;
   };
   Share share(std::size_t member, std::size_t count) const noexcept {
-    return {member * count / member_count(), (member + 1) * count / member_count()};
+    return part_of(member, member_count(), count);
+  }
+  /// Likewise of so many parts.
+  static Share part_of(std::size_t part, std::size_t parts, std::size_t count) noexcept {
+    return {part * count / parts, (part + 1) * count / parts};
   }
 
  private:

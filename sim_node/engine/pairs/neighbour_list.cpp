@@ -226,8 +226,9 @@ void NeighbourList::begin_next(const double* position, double skin, ThreadTeam* 
   for (std::size_t p = 0; p < part_count_; ++p) {
     Part& part = parts_[p];
     part.cell = grid_.cell_of_place(part.done);
-    part.found_begin = p * capacity_ / part_count_;
-    part.found_room = (p + 1) * capacity_ / part_count_ - part.found_begin;
+    const ThreadTeam::Share room = share_of(p, capacity_);
+    part.found_begin = room.first;
+    part.found_room = room.last - room.first;
     part.found_total = 0;
     part.overflowed = false;
   }
@@ -236,8 +237,9 @@ void NeighbourList::begin_next(const double* position, double skin, ThreadTeam* 
 void NeighbourList::begin_stage(Stage stage, std::size_t count) noexcept {
   stage_ = stage;
   for (std::size_t p = 0; p < part_count_; ++p) {
-    parts_[p].done = p * count / part_count_;
-    parts_[p].last = (p + 1) * count / part_count_;
+    const ThreadTeam::Share share = share_of(p, count);
+    parts_[p].done = share.first;
+    parts_[p].last = share.last;
   }
 }
 
@@ -442,12 +444,12 @@ void NeighbourList::end_count(ThreadTeam* team) noexcept {
 
 /// In a row the entries of each part follow those of the part before.
 void NeighbourList::end_count_of_parts(ThreadTeam* team) noexcept {
-  const auto first_of = [this](std::size_t part) { return part * count_p_ / part_count_; };
   make_parts(team, [&](std::size_t p) noexcept {
+    const ThreadTeam::Share rows = share_of(p, count_p_);
     std::size_t sum = 0;
     for (std::size_t counted = 0; counted < part_count_; ++counted) {
       const std::uint32_t* fill = fill_of(counted);
-      for (std::size_t a = first_of(p); a < first_of(p + 1); ++a) sum += fill[a];
+      for (std::size_t a = rows.first; a < rows.last; ++a) sum += fill[a];
     }
     parts_[p].entries = sum;
   });
@@ -459,8 +461,9 @@ void NeighbourList::end_count_of_parts(ThreadTeam* team) noexcept {
   }
   next_.start[count_p_] = entries;
   make_parts(team, [&](std::size_t p) noexcept {
+    const ThreadTeam::Share rows = share_of(p, count_p_);
     std::size_t next = parts_[p].entries;
-    for (std::size_t a = first_of(p); a < first_of(p + 1); ++a) {
+    for (std::size_t a = rows.first; a < rows.last; ++a) {
       next_.start[a] = next;
       for (std::size_t counted = 0; counted < part_count_; ++counted) {
         std::uint32_t& fill = fill_of(counted)[a];
@@ -475,7 +478,7 @@ void NeighbourList::end_count_of_parts(ThreadTeam* team) noexcept {
 void NeighbourList::keep_some(std::size_t part, std::size_t members) noexcept {
   std::size_t& done = parts_[part].done;
   const std::size_t end = std::min(done + members, parts_[part].last);
-  if (part_count_ > 1 && done == part * later_count() / part_count_)
+  if (part_count_ > 1 && done == share_of(part, later_count()).first)
     std::fill_n(fill_of(part), count_p_, 0U);
   const double reach = reach_square(next_);
   const double* position = next_.from.data();

@@ -147,6 +147,9 @@ class NeighbourList {
   /// Divides the members of a stage into parts.
   void begin_stage(Stage stage, std::size_t count) noexcept;
   bool is_stage_done() const noexcept;
+  ThreadTeam::Share share_of(std::size_t part, std::size_t count) const noexcept {
+    return ThreadTeam::part_of(part, part_count_, count);
+  }
   void end_find(const double* position, ThreadTeam* team) noexcept;
   std::uint32_t* fill_of(std::size_t part) noexcept { return fill_.data() + part * count_p_; }
   void count_rows(std::size_t part, std::size_t b, std::size_t count) noexcept;

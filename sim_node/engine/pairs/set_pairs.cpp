@@ -77,9 +77,6 @@ StepEnergy energy_of(const MemberWorks& works) noexcept {
 /// asks for, whatever the number of threads.
 constexpr std::size_t kMinChunk = 32;
 constexpr std::size_t kChunks = 1024;
-/// Columns of padding for the threads of a team.
-constexpr std::size_t kMaxTeam = 256;
-
 std::size_t chunk_of(std::size_t member_count) {
   return padded(std::max(kMinChunk, member_count / kChunks), kPairBatch);
 }
@@ -127,7 +124,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       is_run = is_run && column_[m + i] == column_[m] + 4 * i;
     is_run_.push_back(is_run);
   }
-  const std::size_t padded_count = padded(column_.size(), kPairBatch) + kPairBatch;
+  const std::size_t padded_count = padding_begin() + kPairBatch;
   if (!radius_.empty()) radius_.resize(padded_count, 0.0);
   position_.resize(4 * padded_count, 0.0);
   for (std::size_t m = 0; m < column_.size(); ++m) {
@@ -143,7 +140,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
     works_.resize((column_.size() + chunk_ - 1) / chunk_);
     if (set.set_q.empty()) {
       shares_ = RowShares(column_.size(), chunk_);
-      const std::size_t with_team = position_.size() + 4 * kPairBatch * kMaxTeam;
+      const std::size_t with_team = position_.size() + 4 * kPairBatch * ThreadTeam::kMaxMembers;
       for (AlignedVector<double>* values : {&position_, &moved_, &force_, &viscous_})
         values->resize(with_team, 0.0);
     }
@@ -195,7 +192,7 @@ bool SetPairs::is_sharable(const StateTable& table) const noexcept {
 }
 
 std::size_t SetPairs::part_count() const noexcept {
-  return is_sharable_ ? std::min(kMaxTeam, works_.size()) : 1;
+  return is_sharable_ ? std::min(ThreadTeam::kMaxMembers, works_.size()) : 1;
 }
 
 bool SetPairs::may_share(const ThreadTeam* team) const noexcept {
@@ -214,12 +211,12 @@ void SetPairs::swap_team_room(SetPairs& other) noexcept {
 /// A thread has padding of its own, and gives forces to its members alone.
 MemberColumns SetPairs::members_of(const RowShares::Share& share,
                                    std::size_t thread) const noexcept {
-  const std::size_t columns = padded(column_.size(), kPairBatch) + kPairBatch * (1 + thread);
+  const std::size_t columns = padding_begin() + kPairBatch * (1 + thread);
   return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * columns),
           static_cast<std::uint32_t>(4 * share.last)};
 }
 
-/// Calls visit(chunk) for each chunk of members, and sums their works in that order.
+/// Calls visit(chunk) for each chunk of members.
 template <class Visit>
 void SetPairs::visit_chunks(ThreadTeam* team, Visit visit) noexcept {
   if (!may_share(team)) {
@@ -239,8 +236,8 @@ StepEnergy SetPairs::sum_of_works() const noexcept {
 }
 
 MemberColumns SetPairs::members() const noexcept {
-  return {position_.data(), moved_.data(),
-          static_cast<std::uint32_t>(4 * padded(column_.size(), kPairBatch)), kNoColumn};
+  return {position_.data(), moved_.data(), static_cast<std::uint32_t>(4 * padding_begin()),
+          kNoColumn};
 }
 
 PairRest SetPairs::rest() const noexcept {
@@ -299,14 +296,8 @@ StepEnergy SetPairs::add_shared_forces(const PairStep& step, const ForceColumns&
   team.run([&](std::size_t thread) noexcept {
     RowShares::Share& share = shares_.share(thread);
     const MemberColumns members = members_of(share, thread);
-    const auto clear = [](AlignedVector<double>& values, std::size_t first, std::size_t last) {
-      std::fill(values.data() + first, values.data() + last, 0.0);
-    };
-    for (AlignedVector<double>* force : {&force_, &viscous_}) {
-      if (force == &viscous_ && !has_viscous_) continue;
-      clear(*force, 4 * share.first, 4 * share.last);
-      clear(*force, members.padding, members.padding + 4 * kPairBatch);
-    }
+    clear_forces_of(share.first, share.last - share.first);
+    clear_forces_of(members.padding / 4, kPairBatch);
     step_share(step, members, share);
     share.largest_partners = largest_among(share.first, share.last);
     for (std::size_t m = share.first; m < share.last; m += chunk_)
@@ -680,17 +671,16 @@ void SetPairs::measure_surfaces(const double* position, const std::vector<std::u
 
 void SetPairs::clear_forces() noexcept {
   if (active_.are_all() && surfaces_.empty()) {
-    const auto end = static_cast<std::ptrdiff_t>(4 * padded(column_.size(), kPairBatch));
-    std::fill_n(force_.begin(), end, 0.0);
-    if (has_viscous_) std::fill_n(viscous_.begin(), end, 0.0);
+    clear_forces_of(0, padding_begin());
     return;
   }
-  const auto clear = [this](std::size_t first, std::size_t count) {
-    const auto begin = static_cast<std::ptrdiff_t>(4 * first);
-    std::fill_n(force_.begin() + begin, 4 * count, 0.0);
-    if (has_viscous_) std::fill_n(viscous_.begin() + begin, 4 * count, 0.0);
-  };
-  visit_runs([&](std::size_t m) { clear(m, 1); }, clear);
+  visit_runs([this](std::size_t m) { clear_forces_of(m, 1); },
+             [this](std::size_t first, std::size_t count) { clear_forces_of(first, count); });
+}
+
+void SetPairs::clear_forces_of(std::size_t first, std::size_t count) noexcept {
+  std::fill_n(force_.data() + 4 * first, 4 * count, 0.0);
+  if (has_viscous_) std::fill_n(viscous_.data() + 4 * first, 4 * count, 0.0);
 }
 
 void SetPairs::count_partners() noexcept {
@@ -728,8 +718,7 @@ void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& colum
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
   if (!works_.empty() && active_.are_all()) {
-    for (std::size_t chunk = 0; chunk < works_.size(); ++chunk)
-      give_forces_of_chunk(chunk, columns);
+    visit_chunks(nullptr, [&](std::size_t chunk) { give_forces_of_chunk(chunk, columns); });
     return sum_of_works();
   }
   if (!surfaces_.empty()) {
@@ -921,12 +910,13 @@ void SetPairs::make_room(const double* position) noexcept {
 }
 
 bool SetPairs::lacks_room_for_team() const noexcept {
-  return part_count() > 1 && team_size_ > 1 && shares_.lacks_room(std::min(team_size_, kMaxTeam));
+  return part_count() > 1 && team_size_ > 1 &&
+         shares_.lacks_room(std::min(team_size_, ThreadTeam::kMaxMembers));
 }
 
 void SetPairs::make_team_room() noexcept {
   if (!lacks_room_for_team()) return;
-  const std::size_t team_size = std::min(team_size_, kMaxTeam);
+  const std::size_t team_size = std::min(team_size_, ThreadTeam::kMaxMembers);
   try {
     neighbours_.make_room_for_team(team_size);
     shares_.make_room(team_size);
@@ -965,7 +955,7 @@ bool SetPairs::is_overflowed() const noexcept {
 }
 
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
-  const std::size_t value_count = 4 * (padded(column_.size(), kPairBatch) + kPairBatch);
+  const std::size_t value_count = 4 * (padding_begin() + kPairBatch);
   for (AlignedVector<double>* values : {&force_, &viscous_, &position_})
     archive.reals(std::span(*values).first(value_count));
   if (archive.restores()) {

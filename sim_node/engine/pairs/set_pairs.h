@@ -183,6 +183,9 @@ class SetPairs {
   void step_earlier(const PairStep& step, const MemberColumns& members,
                     RowShares::Share& share) noexcept;
   void clear_forces() noexcept;
+  void clear_forces_of(std::size_t first, std::size_t count) noexcept;
+  /// The first column of padding, after whole batches of members.
+  std::size_t padding_begin() const noexcept { return padded(column_.size(), kPairBatch); }
   void step_active_rows(const PairStep& step) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) noexcept;
   void count_partners() noexcept;
