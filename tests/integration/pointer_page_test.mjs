@@ -16,6 +16,16 @@ const press = async (page, mat) => {
   await page.mouse.move(x, y);
   await page.mouse.down();
 };
+const cursorOf = (page) => page.evaluate(() => getComputedStyle(document.querySelector('#stage canvas')).cursor);
+/** Moves the hand that holds `mat` until the force of a new event is drawn. */
+const feels = async (page, mat) => {
+  const { x, y } = await placeOf(page, mat);
+  const { delays } = await pointer(page);
+  await until('the hand is felt', async () => {
+    await page.mouse.move(x + 5 * Math.random(), y + 5);
+    return (await isHeld(page, true)) && (await pointer(page)).delays > delays;
+  });
+};
 /** True if one port is held, by this page or by another one. */
 const isHeld = async (page, byThisPage) => {
   const { held } = await pointer(page);
@@ -42,11 +52,13 @@ const cases = {
     const camera = await viz(page, 'camera');
     const start = await placeOf(page, mat);
     await page.mouse.move(start.x, start.y);
+    await until('the pointer shows that it can take hold', async () => (await cursorOf(page)) === 'grab');
     await page.mouse.down();
     await until('the page holds it', async () => {
       const { held } = await pointer(page);
       return held.length === 1 && held[0].port === port && held[0].byThisPage;
     });
+    assert.equal(await cursorOf(page), 'grabbing');
     const below = PRESS_M / camera.metresPerPixel;
     for (let n = 1; n <= 40; ++n) {
       await page.mouse.move(start.x, start.y + (below * n) / 40);
@@ -116,15 +128,30 @@ const cases = {
     await until('the script plays', async () => (await stateOf(page, 'keyboard')) === 'running');
   },
 
-  'viz_node is killed under the hand, and the hand lets go': async (session) => {
+  'a page that stalled under the hand holds on': async ({ page, ports }) => {
+    await press(page, ports[0].mat);
+    await until('it holds', () => isHeld(page, true));
+    await page.evaluate(() => {
+      for (const end = performance.now() + 1500; performance.now() < end; );
+    });
+    await page.waitForTimeout(700); // what the page knows is new again, and its hand has not moved
+    await until('it holds', () => isHeld(page, true));
+    await feels(page, ports[0].mat);
+    await page.mouse.up();
+    await until('the script plays', async () => (await stateOf(page, 'keyboard')) === 'running');
+  },
+
+  'viz_node is killed under the hand, which takes hold again': async (session) => {
     const { page, ports } = session;
     await press(page, ports[0].mat);
     await until('it holds', async () => (await stateOf(page, 'pointer')) === 'running');
     await session.view.end('SIGKILL');
     await until('the page knows', async () => !(await viz(page, 'connected')));
-    await page.mouse.up();
     session.view = startView(session, new URL(session.url).port);
-    await until('the page is connected again', () => viz(page, 'connected'));
+    await feels(page, ports[0].mat);
+    assert.equal(await cursorOf(page), 'grabbing');
+    await page.mouse.up();
+    assert.notEqual(await cursorOf(page), 'grabbing');
     await until('the script plays', async () => (await stateOf(page, 'keyboard')) === 'running');
     await until('the port is offered again', async () => (await pointer(page)).ports.length === 1);
   },

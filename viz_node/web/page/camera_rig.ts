@@ -56,6 +56,7 @@ export class CameraRig {
     this.flatCamera.position.set(0, 0, 1);
     this.perspectiveCamera.position.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, element);
+    element.style.cursor = ''; // as the style sheet has it
     this.controls.zoomToCursor = true;
     if (space < 3) {
       // A flat scene is moved rather than turned.

@@ -189,7 +189,7 @@ export class Page {
     const looksAlike = last !== null && last.name === description.name && last.space === description.space;
     description.tools = toolsOf(description);
     this.description = description;
-    this.pointer.describe(description);
+    this.pointer.describe(description, isSame);
     this.pending = null;
     this.connection.acknowledge(); // frames of the last scene are not drawn any more
     this.factor.clear();

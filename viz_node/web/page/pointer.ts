@@ -58,15 +58,15 @@ export class PointerHand {
     window.setInterval(() => this.repeat(), REPEAT_MS);
   }
 
-  describe(description: Description): void {
-    for (const id of [...this.drags.keys()]) this.letGo(id);
+  /** @param isSame  the scene goes on where it was: a hand that still drags takes hold again */
+  describe(description: Description, isSame: boolean): void {
+    if (!isSame) for (const id of [...this.drags.keys()]) this.letGo(id);
     this.description = description;
     this.state = null;
   }
 
-  /** The connection is gone: viz_node lets go for the page. */
+  /** The connection is gone: viz_node lets go for the page, until repeat() is heard again. */
   forget(): void {
-    this.drags.clear();
     this.state = null;
     this.seenEvent = 0;
     this.eventMs.clear();
