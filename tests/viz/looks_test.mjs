@@ -221,6 +221,37 @@ const cases = {
     await page.click('#picked-close');
   },
 
+  'a scene that is fitted stands above the keyboards, whose captions are readable over matter': async ({ page }) => {
+    /** Where the camera looks after a fit [m], metres per pixel, and how much of the lower edge is taken [CSS pixels]. */
+    const fitted = (hidden) =>
+      page.evaluate(async (isHidden) => {
+        const panel = document.querySelector('#keyboards');
+        panel.hidden = isHidden;
+        for (let n = 0; n < 3; ++n) await new Promise(requestAnimationFrame); // until the page knows of its size
+        document.querySelector('#tools button[data-key="f"]').click();
+        const tops = [panel, document.querySelector('#tools')].map((one) => one.getBoundingClientRect()).filter(({ height }) => height > 0).map(({ top }) => top);
+        const { target, metresPerPixel } = window.viz.camera;
+        return { y: target[1], metresPerPixel, taken: document.querySelector('#stage').getBoundingClientRect().bottom - Math.min(...tops) };
+      }, hidden);
+    const found = [];
+    await page.keyboard.press('h');
+    for (const [width, height] of [[1000, 700], [390, 800]]) {
+      await page.setViewportSize({ width, height });
+      const [without, below] = [await fitted(true), await fitted(false)];
+      found.push({ wanted: (below.taken - without.taken) / 2, higher: (without.y - below.y) / below.metresPerPixel });
+      await page.screenshot({ path: join(out, `looks_keyboard_${width}.png`) });
+    }
+    await page.keyboard.press('h');
+    const [wide, narrow] = found;
+    assert.ok(wide.wanted > 25 && Math.abs(wide.higher - wide.wanted) < 1, JSON.stringify(wide));
+    // A part of the view is left to the scene, however much stands around it.
+    assert.ok(narrow.wanted > 25 && narrow.higher > 0.8 * narrow.wanted && narrow.higher < narrow.wanted + 1, JSON.stringify(narrow));
+    const [caption, hand] = await page.evaluate(() => ['#keyboards figcaption', '#hand'].map((one) => getComputedStyle(document.querySelector(one)).backgroundColor));
+    assert.equal(caption, hand);
+    const isBelow = await page.evaluate(() => Boolean(document.querySelector('#marks').compareDocumentPosition(document.querySelector('#head')) & Node.DOCUMENT_POSITION_FOLLOWING));
+    assert.ok(isBelow, 'marks of the view lie below the panels');
+  },
+
   'all of it has room on a telephone': async ({ page }) => {
     await page.setViewportSize({ width: 390, height: 800 });
     await drawn(page, 2);

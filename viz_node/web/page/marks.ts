@@ -20,7 +20,7 @@ export class Marks {
 
   constructor(container: HTMLElement) {
     this.sheet.id = 'marks';
-    container.append(this.sheet);
+    container.prepend(this.sheet); // below words and buttons
     this.pen = this.sheet.getContext('2d');
   }
 

@@ -101,7 +101,7 @@ export class SceneView {
     this.forces = new NetForces(topology.masses);
     this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
-    for (const one of container.querySelectorAll('#sound, #legend, #control, #tools')) this.edgeWatch.observe(one);
+    for (const one of container.querySelectorAll('#sound, #legend, #control, #keyboards, #tools')) this.edgeWatch.observe(one);
     this.resize(container.clientWidth, container.clientHeight);
   }
 
@@ -168,7 +168,7 @@ export class SceneView {
     this.changed();
   }
 
-  /** Legend and buttons above, tools below: a scene that is fitted stands between them. */
+  /** Legend and buttons above, keyboards and tools below: a scene that is fitted stands between them. */
   private edges(): Edges {
     return (this.knownEdges ??= this.measureEdges());
   }
@@ -177,7 +177,7 @@ export class SceneView {
     const stage = this.container.getBoundingClientRect();
     const boxes = (selector: string) => [...this.container.querySelectorAll(selector)].map((one) => one.getBoundingClientRect()).filter(({ height }) => height > 0);
     const top = boxes('#legend, #control').map((box) => box.bottom - stage.top);
-    const bottom = boxes('#tools').map((box) => stage.bottom - box.top);
+    const bottom = boxes('#keyboards, #tools').map((box) => stage.bottom - box.top);
     return { top: Math.max(0, ...top), bottom: Math.max(0, ...bottom) };
   }
 
