@@ -49,6 +49,20 @@ TEST(FlowCredit, CountsTheFramesThatPassedItBy) {
   EXPECT_EQ(credit.dropped(), 8u);
 }
 
+TEST(FlowCredit, SendsOneOfSoManyFramesAndCountsNoOtherAsDropped) {
+  FlowCredit credit(4);
+  ASSERT_TRUE(credit.may_send(2, kBegin));
+  credit.sent(2, 0, kBegin);
+  EXPECT_FALSE(credit.may_send(5, kBegin));
+  ASSERT_TRUE(credit.may_send(6, kBegin));
+  credit.sent(6, 0, kBegin);
+  EXPECT_EQ(credit.dropped(), 0u);
+
+  credit.acknowledge(6);
+  credit.sent(13, 0, kBegin);
+  EXPECT_EQ(credit.dropped(), 3u);
+}
+
 TEST(FlowCredit, TakesAnAcknowledgementForAllFramesUpToIt) {
   FlowCredit credit;
   credit.sent(1, 10, kBegin);

@@ -197,9 +197,10 @@ const cases = {
     await page.setViewportSize({ width: 1280, height: 720 });
   },
 
-  'a second page shows the same': async ({ browser, url, page }) => {
+  'a second page shows the same, and passes the query of its address on': async ({ browser, url, page }) => {
     const second = await browser.newPage();
-    await second.goto(url);
+    const [socket] = await Promise.all([second.waitForEvent('websocket'), second.goto(`${url}/?every=5`)]);
+    assert.match(socket.url(), /\/live\?every=5$/);
     await until('it draws', async () => (await viz(second, 'framesDrawn')) > 5);
     await second.close();
     await page.bringToFront();

@@ -258,6 +258,25 @@ const cases = {
     });
   },
 
+  'a client that asks for each fifth frame gets those alone, and every row of the signals': async ({ url }) => {
+    const client = new Client(url, '?every=5');
+    await withClients(url, 1, async (other) => {
+      await until('8 frames came', () => client.frames.length >= 8 && other.frames.length >= 8);
+      client.close();
+      for (const [i, { sequence, dropped }] of client.frames.slice(1).entries()) {
+        const before = client.frames[i];
+        assert.ok(sequence - before.sequence >= 5, `${sequence} after ${before.sequence}`);
+        assert.equal(dropped - before.dropped, sequence - before.sequence - 5);
+      }
+      checkSignals(client.signals);
+      assert.ok(other.frames.some(({ sequence }, i) => i > 0 && sequence - other.frames[i - 1].sequence < 5), 'the other one gets more of them');
+    });
+    for (const every of ['0', '-3', '1.5', 'two', '']) {
+      assert.equal(await upgrade(url, `/live?every=${every}`, {}), 400, every);
+      assert.equal((await ask(url, `/?every=${every}`)).text, 'every=N sends each N-th frame: N is a whole number from 1 up\n');
+    }
+  },
+
   'the status names every node, and viz_node says where its page is': async ({ url }) => {
     await withClients(url, 1, async (client) => {
       const status = await until('three nodes are heard', () => {

@@ -1,6 +1,9 @@
 // tests/viz/request_filter_test.cpp
 #include "viz_node/web/request_filter.h"
 
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace cordis::viz {
@@ -59,6 +62,26 @@ TEST(RequestFilter, LetsAnyQueryPass) {
   request.target = "/?next=%2e%2e/";
   EXPECT_EQ(status_of(request), 0u);
   EXPECT_EQ(path_of("/a.js?b#c"), "/a.js");
+}
+
+TEST(RequestFilter, RefusesEachNthFrameWhereNIsNoWholeNumberFromOneUp) {
+  for (const std::string_view n : {"", "0", "-1", "+1", "1.5", "4x", " 4", "%34", "4294967296"}) {
+    const std::string target = "/live?token=a&every=" + std::string(n);
+    Request request = live();
+    request.target = target;
+    EXPECT_EQ(status_of(request), 400u) << target;
+    EXPECT_EQ(refusal_of(request, kLoopbackOnly)->text,
+              "every=N sends each N-th frame: N is a whole number from 1 up\n");
+  }
+  for (const auto& [target, every] : {std::pair{"/live", 1u},
+                                      {"/live?every=1", 1u},
+                                      {"/live?a=b&every=40#x", 40u},
+                                      {"/live?xevery=0", 1u}}) {
+    Request request = live();
+    request.target = target;
+    EXPECT_EQ(status_of(request), 0u) << target;
+    EXPECT_EQ(every_of(target), every) << target;
+  }
 }
 
 TEST(RequestFilter, RefusesForeignOrigins) {

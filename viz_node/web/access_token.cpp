@@ -3,20 +3,12 @@
 
 #include <algorithm>
 
+#include "viz_node/web/request_filter.h"
+
 namespace cordis::viz {
 
 std::string_view token_of(std::string_view target) noexcept {
-  constexpr std::string_view kKey = "token=";
-  const std::size_t query = target.find('?');
-  if (query == std::string_view::npos) return {};
-  target = target.substr(query + 1);
-  target = target.substr(0, target.find('#'));
-  while (!target.empty()) {
-    const std::string_view item = target.substr(0, target.find('&'));
-    if (item.starts_with(kKey)) return item.substr(kKey.size());
-    target.remove_prefix(std::min(item.size() + 1, target.size()));
-  }
-  return {};
+  return query_value(target, "token").value_or("");
 }
 
 bool is_same_secret(std::string_view candidate, std::string_view expected) noexcept {

@@ -7,8 +7,13 @@
 
 namespace cordis::viz {
 
+FlowCredit::FlowCredit(std::uint32_t every) noexcept : every_(every) {
+  CORDIS_ASSERT(every > 0);
+}
+
 bool FlowCredit::may_send(std::uint32_t newest, std::int64_t now_nsec) const noexcept {
   if (newest <= last_sent_) return false;
+  if (last_sent_ != 0 && newest - last_sent_ < every_) return false;
   return count_ < kMaxUnacknowledged || now_nsec - last_sent_nsec_ >= kAckTimeoutNsec;
 }
 
@@ -16,7 +21,7 @@ void FlowCredit::sent(std::uint32_t sequence, std::int64_t taken_nsec,
                       std::int64_t now_nsec) noexcept {
   CORDIS_ASSERT(may_send(sequence, now_nsec));
   if (count_ == kMaxUnacknowledged) forget_oldest(1);
-  if (last_sent_ != 0) dropped_ += sequence - last_sent_ - 1;
+  if (last_sent_ != 0) dropped_ += sequence - last_sent_ - every_;
   last_sent_ = sequence;
   last_sent_nsec_ = now_nsec;
   flights_[count_++] = {sequence, taken_nsec};

@@ -17,7 +17,7 @@ namespace cordis::viz {
 ///
 /// No client can lose its credit for good. What is on its way is computed from the newest
 /// acknowledgement; reset() forgets it; a frame that is not acknowledged in time is given up. So
-/// may_send() of a new frame is true at the latest kAckTimeoutNsec after the last sent(), whatever
+/// may_send() of a frame that is due is true at the latest kAckTimeoutNsec after the last sent(), whatever
 /// the client acknowledges or leaves out. Pure logic, the caller's clock, O(1) memory.
 class FlowCredit {
  public:
@@ -27,7 +27,11 @@ class FlowCredit {
   /// for one that never acknowledges.
   static constexpr std::int64_t kAckTimeoutNsec = 3'000'000'000;
 
-  /// True if the frame `newest` was not sent before, and there is credit for it.
+  /// @param every  of so many frames the client gets one
+  explicit FlowCredit(std::uint32_t every = 1) noexcept;
+
+  /// True if the frame `newest` is the next one that the client gets, or newer, and there is credit
+  /// for it.
   /// @param now_nsec  steady clock, never backwards [ns]
   bool may_send(std::uint32_t newest, std::int64_t now_nsec) const noexcept;
 
@@ -45,7 +49,7 @@ class FlowCredit {
   std::size_t unacknowledged() const noexcept { return count_; }
   std::uint32_t dropped() const noexcept {
     return dropped_;
-  }  ///< frames passed by since the first one sent
+  }  ///< due frames passed by since the first one sent
 
  private:
   struct Flight {
@@ -55,6 +59,7 @@ class FlowCredit {
 
   void forget_oldest(std::size_t flights) noexcept;
 
+  std::uint32_t every_;
   std::array<Flight, kMaxUnacknowledged> flights_{};  // oldest first
   std::size_t count_ = 0;
   std::uint32_t last_sent_ = 0;  // 0: none yet

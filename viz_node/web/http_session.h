@@ -99,7 +99,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
       if (state_.pages() >= kMaxPages) return reply(503, kPlainText, "too many pages are open\n");
       state_.requests.erase(place_);
       std::make_shared<WebSocketSession>(std::move(stream_), std::move(slot_), state_,
-                                         state_.may_command(target))
+                                         state_.may_command(target), every_of(target))
           ->start(http::request<http::empty_body>(request.base()));
       return;
     }

@@ -2,6 +2,8 @@
 #include "viz_node/web/request_filter.h"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 #include <arpa/inet.h>
 
@@ -62,6 +64,28 @@ std::string_view path_of(std::string_view target) noexcept {
   return target.substr(0, target.find_first_of("?#"));
 }
 
+std::optional<std::string_view> query_value(std::string_view target,
+                                            std::string_view key) noexcept {
+  const std::size_t query = target.find('?');
+  if (query == std::string_view::npos) return std::nullopt;
+  target = target.substr(query + 1);
+  target = target.substr(0, target.find('#'));
+  while (!target.empty()) {
+    const std::string_view item = target.substr(0, target.find('&'));
+    if (item.starts_with(key) && item.substr(key.size()).starts_with('='))
+      return item.substr(key.size() + 1);
+    target.remove_prefix(std::min(item.size() + 1, target.size()));
+  }
+  return std::nullopt;
+}
+
+std::uint32_t every_of(std::string_view target) noexcept {
+  const std::string_view text = query_value(target, "every").value_or("1");
+  std::uint32_t every = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), every);
+  return error == std::errc{} && end == text.data() + text.size() ? every : 0;
+}
+
 std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& hosts) {
   const std::string_view path = path_of(request.target);
   if (request.method != "GET" && request.method != "HEAD")
@@ -75,6 +99,8 @@ std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& h
   }
   if (!request.origin.empty() && !is_same_site(request.origin, request.host))
     return Refusal{403, "pages of other sites may not read this session\n"};
+  if (every_of(request.target) == 0)
+    return Refusal{400, "every=N sends each N-th frame: N is a whole number from 1 up\n"};
   if (request.upgrade && path != kLivePath) return Refusal{404, "no WebSocket is here\n"};
   if (!request.upgrade && path == kLivePath) return Refusal{426, "this is a WebSocket\n"};
   return std::nullopt;

@@ -1,6 +1,7 @@
 // viz_node/web/request_filter.h -- the checks on a request before anything is done for it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,9 +36,17 @@ inline constexpr std::string_view kLivePath = "/live";
 /// The path of a target, without its query.
 std::string_view path_of(std::string_view target) noexcept;
 
+/// The value of `key` in the query of a target, "/live?key=abc": nothing without one. The first one
+/// counts.
+std::optional<std::string_view> query_value(std::string_view target, std::string_view key) noexcept;
+
+/// N of "/live?every=N", which asks for each N-th frame: 1 without one, 0 where it is no whole
+/// number from 1 up.
+std::uint32_t every_of(std::string_view target) noexcept;
+
 /// Refuses
 ///   405  anything but GET and HEAD
-///   400  a target that is no path
+///   400  a target that is no path, or asks for each N-th frame with a wrong N
 ///   403  a path with "..", "%", "\" or a control character: no file of the page has such a name
 ///   403  a Host that is not accepted, so that a foreign name that resolves to this machine (DNS
 ///        rebinding) gets nothing

@@ -27,8 +27,12 @@ class SendQueue {
 
   /// @param page         number of the page
   /// @param may_command  what its hello says
-  SendQueue(ServerState& state, std::uint32_t page, bool may_command)
-      : state_(state), page_(page), hello_(may_command ? state.hello : state.hello_view_only) {}
+  /// @param every        of so many frames it gets one
+  SendQueue(ServerState& state, std::uint32_t page, bool may_command, std::uint32_t every)
+      : state_(state),
+        page_(page),
+        hello_(may_command ? state.hello : state.hello_view_only),
+        credit_(every) {}
   ~SendQueue() { listen(false); }
   SendQueue(const SendQueue&) = delete;
   SendQueue& operator=(const SendQueue&) = delete;

@@ -24,13 +24,15 @@ inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
  public:
   /// @param may_command  whether its commands and its hand count
+  /// @param every        of so many frames it gets one
   WebSocketSession(beast::tcp_stream&& stream, ConnectionSlot&& slot, ServerState& state,
-                   bool may_command)
+                   bool may_command, std::uint32_t every)
       : stream_(std::move(stream)),
         slot_(std::move(slot)),
         state_(state),
         page_(++state.page_count),
-        may_command_(may_command) {}
+        may_command_(may_command),
+        queue_(state, page_, may_command, every) {}
   ~WebSocketSession() {
     state_.clients.erase(this);
     if (drags_) state_.pointers.leave(page_, node::monotonic_nsec());
@@ -126,7 +128,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   std::uint32_t page_;  // its number
   bool may_command_;
   bool drags_ = false;  // it has
-  SendQueue queue_{state_, page_, may_command_};
+  SendQueue queue_;
   beast::flat_buffer incoming_;
   bool joined_ = false;
   bool writing_ = false;
