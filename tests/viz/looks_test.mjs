@@ -100,6 +100,27 @@ const cases = {
     await page.click('#picked-close');
   },
 
+  'masses have the colours of the net forces on them': async ({ page }) => {
+    await page.selectOption('#colouring', 'force');
+    await until('the scale says how much', async () => /^[\d.]+\s?(mN|µN)$/.test(await textOf(page, '#scale-high')) && Number.parseFloat(await textOf(page, '#scale-high')) > 0);
+    await page.keyboard.press('h');
+    assert.match(await textOf(page, '#scale-caption'), /^net force on free masses, mean over [\d.]+\s?m?s$/);
+    const high = await textOf(page, '#scale-high');
+    const highN = Number.parseFloat(high) * (high.endsWith('mN') ? 1e-3 : 1e-6);
+    const { speeds, port } = palettes.dark;
+    for (const mat of [CORE - 5, CORE, SKIN, BOB]) {
+      const share = Math.min(1, Math.hypot(...(await page.evaluate((one) => window.viz.force(one), mat))) / highN);
+      const [from, to] = (share < 0.5 ? speeds.slice(0, 2) : speeds.slice(1)).map(bytesOf);
+      const part = share < 0.5 ? 2 * share : 2 * share - 1;
+      const wanted = `#${from.map((byte, k) => Math.round(byte + (to[k] - byte) * part).toString(16).padStart(2, '0')).join('')}`;
+      assertHue((await look(page, mat)).colour, wanted, `MAT ${mat} with ${share} of ${high}`);
+    }
+    assert.deepEqual((await legendOf(page)).filter(([mark]) => mark === 'mass' || mark === 'handle'), [['handle', 'handle of a device', port]]);
+    await page.screenshot({ path: join(out, 'looks_forces.png') });
+    await page.keyboard.press('h');
+    await page.selectOption('#colouring', 'bodies');
+  },
+
   'what is picked has its name at once': async ({ page }) => {
     await pickCore(page);
     await page.click('#picked-close');

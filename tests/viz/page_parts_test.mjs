@@ -44,6 +44,10 @@ const cases = {
         assert.ok(Math.abs(force - mass * acceleration[k]) <= room, `run ${run}: ${force} N, wanted ${mass * acceleration[k]}`);
       });
       assert.equal(forces.of(0), null, 'what has no mass has no net force');
+      const sizes = new Float32Array(2);
+      assert.equal(forces.sizesOfAll(sizes), true);
+      const wanted = Math.hypot(...forces.of(1));
+      assert.ok(Number.isNaN(sizes[0]) && Math.abs(sizes[1] - wanted) <= 1e-5 * wanted, `${sizes}, wanted ${wanted} N`);
     }
   },
 

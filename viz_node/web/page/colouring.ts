@@ -4,7 +4,7 @@ import { joined, withUnit } from './format.ts';
 import type { Palette } from './colours.ts';
 import { setText } from './rows.ts';
 
-export const COLOURINGS = ['bodies', 'speed', 'components', 'stretch'] as const;
+export const COLOURINGS = ['bodies', 'speed', 'force', 'components', 'stretch'] as const;
 export type Colouring = (typeof COLOURINGS)[number];
 
 /** A scale of colours with its ends in words. */
@@ -19,6 +19,15 @@ export interface Scale {
 /** @param fastest [m/s], 0 has the other end of the scale */
 export function speedScale(fastest: number, palette: Palette): Scale {
   return { low: '0', high: joined(withUnit(fastest, 'm/s')), caption: 'speed, mean over a frame', colours: palette.speeds, isStepped: false };
+}
+
+/**
+ * @param strongest  force that has the other end of the scale [N]
+ * @param spanS      time over which it is a mean [s]
+ */
+export function forceScale(strongest: number, spanS: number, palette: Palette): Scale {
+  const span = spanS > 0 ? `, mean over ${joined(withUnit(spanS, 's'))}` : '';
+  return { low: '0', high: joined(withUnit(strongest, 'N')), caption: `net force on free masses${span}`, colours: palette.speeds, isStepped: false };
 }
 
 /**
@@ -52,9 +61,10 @@ export class ColouringBox {
     return this.select.value as Colouring;
   }
 
-  /** Components and stretch are of links. */
-  describe(linkCount: number): void {
-    for (const option of this.select.options) option.disabled = linkCount === 0 && (option.value === 'components' || option.value === 'stretch');
+  /** Components and stretch are of links, forces of free masses. */
+  describe(linkCount: number, hasFreeMasses: boolean): void {
+    const needs: Record<string, boolean> = { components: linkCount > 0, stretch: linkCount > 0, force: hasFreeMasses };
+    for (const option of this.select.options) option.disabled = needs[option.value] === false;
     if (this.select.selectedOptions[0]?.disabled) this.choose('bodies');
   }
 

@@ -37,6 +37,17 @@ export function bytesOf(hex: string): [number, number, number] {
 /** Red, green and blue of "#rrggbb", 0..1. */
 export const sharesOf = (hex: string): number[] => bytesOf(hex).map((byte) => byte / 255);
 
+/** `count` colours from the first of a list to its last, three bytes each. */
+export function ramp(colours: string[], count: number): Uint8Array {
+  const bytes = new Uint8Array(3 * count);
+  for (let i = 0; i < count; ++i) {
+    const place = (i / (count - 1)) * (colours.length - 1);
+    const first = Math.min(Math.floor(place), colours.length - 2);
+    bytes.set(bytesOf(mixed(colours[first]!, colours[first + 1]!, place - first)), 3 * i);
+  }
+  return bytes;
+}
+
 const LEAST_CONTRAST = 3; // of a mark of the view to its background: WCAG 2.1, 1.4.11
 const STEPS = 20; // on the way to the colour of texts
 

@@ -13,7 +13,7 @@ const KEYS: [string, string][] = [
   ['f', 'fit the scene'],
   ['1 2 3 4', 'front, side, top, three-dimensional'],
   ['o', 'parallel or perspective'],
-  ['c', 'what the colours say: bodies and states, speed, components, stretch'],
+  ['c', 'what the colours say: bodies and states, speed, force, components, stretch'],
   ['m', 'motion drawn larger than it is, up to 100 times'],
   ['r', 'count motion and stretch from now on'],
   ['t', 'trails of MATs'],

@@ -35,13 +35,13 @@ export function legendOf(description: Description, view: SceneView, hasKeys: boo
   if (plain.length > 0) entries.push({ mark: 'surface', text: surfaceText(plain), colour: palette.surface });
   for (const { mark, name, wanted } of bodies.colouredFixed.slice(0, MOST_BODIES))
     entries.push({ mark, text: mark === 'surface' ? `surface: ${name}` : `${name}, fixed`, colour: readable(wanted, palette) });
-  if (colouring === 'bodies' || colouring === 'components') entries.push(...linkEntries(view, palette.link_states));
+  if (colouring === 'bodies' || colouring === 'force' || colouring === 'components') entries.push(...linkEntries(view, palette.link_states));
   return entries;
 }
 
-/** What the colours of free masses say; a scale says it of speeds. */
+/** What the colours of free masses say; a scale says it of speeds and forces. */
 function massEntries(view: SceneView, colouring: Colouring, palette: Palette): LegendEntry[] {
-  if (colouring === 'speed') return [];
+  if (colouring === 'speed' || colouring === 'force') return [];
   if (colouring === 'stretch') return [{ mark: 'mass', text: 'mass', colour: palette.quiet }];
   if (colouring === 'components') return componentEntries(view, palette);
   const { list } = view.bodies;

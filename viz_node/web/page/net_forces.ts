@@ -53,6 +53,28 @@ export class NetForces {
     return three === null ? 0 : three[2].timeS - three[0].timeS;
   }
 
+  /**
+   * Size of the force on each MAT [N]; NaN where of() has none.
+   * @returns whether there are three frames, else `sizes` stays as it is
+   */
+  sizesOfAll(sizes: Float32Array): boolean {
+    const three = this.threeOf(this.kept);
+    if (three === null) return false;
+    const [x0, x1, x2] = three.map(({ positions }) => positions) as [Float32Array, Float32Array, Float32Array];
+    const [t0, t1, t2] = three.map(({ timeS }) => timeS) as [number, number, number];
+    const [h1, h2] = [t1 - t0, t2 - t1];
+    for (let mat = 0; mat < sizes.length; ++mat) {
+      const mass = this.masses[mat] ?? 0;
+      let square = 0;
+      for (let place = 3 * mat; place < 3 * mat + 3; ++place) {
+        const change = (x2[place]! - x1[place]!) / h2 - (x1[place]! - x0[place]!) / h1;
+        square += change * change;
+      }
+      sizes[mat] = mass === 0 ? Number.NaN : (2 * mass * Math.sqrt(square)) / (t2 - t0);
+    }
+    return true;
+  }
+
   /** Along x, y and z [N]; null for what is fixed or moved by a device, and before there are three frames. */
   of(mat: number): number[] | null {
     const mass = this.masses[mat] ?? 0;

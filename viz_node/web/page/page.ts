@@ -3,7 +3,7 @@ import { Bodies } from './bodies.ts';
 import { ClockOffset, RealTimeFactor } from './clock.ts';
 import type { Pose } from './camera_rig.ts';
 import { firstTheme, keepTheme, paletteOf, type Palette, type ThemeName } from './colours.ts';
-import { ColouringBox, speedScale, stretchScale, type Scale } from './colouring.ts';
+import { ColouringBox, forceScale, speedScale, stretchScale, type Scale } from './colouring.ts';
 import { Connection } from './connection.ts';
 import { Controls } from './controls.ts';
 import { count, joined, roundLength, withUnit } from './format.ts';
@@ -219,7 +219,7 @@ export class Page {
       const bodies = new Bodies(this.description, topology);
       const groups = new LinkGroups(this.description, topology);
       this.view = new SceneView(this.stage, topology, bodies, groups, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
-      this.colouring.describe(topology.linkCount);
+      this.colouring.describe(topology.linkCount, this.view.hasFreeMasses);
       this.colour();
       this.exaggerate();
       this.view.showTrails(this.trails);
@@ -386,6 +386,7 @@ export class Page {
     const { view, palette } = this;
     if (view === null) return null;
     if (this.colouring.value === 'speed') return speedScale(view.fastestSpeed, palette);
+    if (this.colouring.value === 'force') return forceScale(view.strongestForce, view.forceSpanS, palette);
     if (this.colouring.value === 'stretch') return stretchScale(view.links?.widest ?? 0, view.countedSinceS, palette);
     return null;
   }

@@ -2,7 +2,7 @@
 // straight into a GPU buffer that matter and links share.
 import { Box3, Vector3 } from 'three';
 import type { Bodies } from './bodies.ts';
-import { ofList, sharesOf, type Palette } from './colours.ts';
+import { ofList, ramp, sharesOf, type Palette } from './colours.ts';
 import type { Colouring } from './colouring.ts';
 import { SMALLER, type Component } from './components.ts';
 import { GlCanvas, shapeOf, VertexArray, type Shape } from './gl_canvas.ts';
@@ -25,6 +25,8 @@ const SAMPLE = 4000;
 const MATS_A_FRAME = 1000; // of larger scenes not every frame is looked at, whether all of it is seen
 const SMALL = 0.4; // of the radius of balls, where the links are looked at
 const FOLLOWED = 1000; // of them are looked at, whether all of it is seen
+const FORCE_COLOURS = 256;
+const FALL = 0.985; // of the full scales of speed and force, per frame
 const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
 /** A MAT or a link near a point of the view. */
@@ -51,6 +53,9 @@ export class SceneView {
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
   private fastest = 0; // [m/s], falls slowly
+  private readonly forceSizes: Float32Array; // on each MAT [N], while they are shown
+  private forceRamp: Uint8Array = new Uint8Array(); // their colours, the weakest first
+  private strongest = 0; // of them, falls slowly [N]
   private framesSinceLook = 0;
   private framed = false;
   private isDrum = false;
@@ -99,6 +104,7 @@ export class SceneView {
     const shapes = new Set(bodies.shapes);
     this.trails = new Trails([...topology.kinds.keys()].filter((mat) => isMobile(mat) && !shapes.has(mat)), palette);
     this.forces = new NetForces(topology.masses);
+    this.forceSizes = new Float32Array(topology.matCount);
     this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     for (const one of container.querySelectorAll('#sound, #legend, #control, #keyboards, #tools')) this.edgeWatch.observe(one);
@@ -130,6 +136,7 @@ export class SceneView {
     }
     this.links?.take(frame.positions, frame.linkStates);
     this.tintComponents();
+    this.tintForces();
     for (const shape of [this.matter, this.links?.shape]) if (shape !== undefined) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
     this.shownForS = frame.simulatedS - this.newestS;
     this.measureSpeed(this.shownForS);
@@ -329,11 +336,13 @@ export class SceneView {
 
   colourBy(colouring: Colouring): void {
     this.colouring = colouring;
+    this.forceRamp = ramp(this.palette.speeds, FORCE_COLOURS);
     this.uniforms.radius_share = colouring === 'stretch' ? SMALL : 1;
     this.measureSpeed(this.shownForS);
     this.links?.colourBy(colouring, this.newest.array);
     if (colouring === 'components') this.tintComponents();
-    else this.tints.set(this.bodies.tints(this.palette, colouring === 'stretch' ? () => this.palette.quiet : undefined));
+    else this.tints.set(this.bodies.tints(this.palette, colouring === 'stretch' || colouring === 'force' ? () => this.palette.quiet : undefined));
+    this.tintForces();
     this.changed();
   }
 
@@ -348,6 +357,32 @@ export class SceneView {
         return colour === SMALLER ? palette.quiet : ofList(palette.bodies, colour);
       }),
     );
+  }
+
+  /** Free masses get the colours of the net forces on them. Without three frames they keep what they have. */
+  private tintForces(): void {
+    if (this.colouring !== 'force' || !this.forces.sizesOfAll(this.forceSizes)) return;
+    const [sizes, kinds, tints] = [this.forceSizes, this.matter.vertices.kind!.array, this.tints.array];
+    let largest = FALL * this.strongest;
+    for (let mat = 0; mat < sizes.length; ++mat) if (kinds[mat] === 0 && sizes[mat]! > largest) largest = sizes[mat]!;
+    this.strongest = largest;
+    for (let mat = 0; mat < sizes.length; ++mat) {
+      if (kinds[mat] !== 0 || Number.isNaN(sizes[mat]!)) continue;
+      const colour = 3 * Math.round(largest > 0 ? ((FORCE_COLOURS - 1) * sizes[mat]!) / largest : 0);
+      for (let k = 0; k < 3; ++k) tints[3 * mat + k] = this.forceRamp[colour + k]!;
+    }
+    this.tints.set();
+  }
+
+  /** True if a net force can be said of a MAT that has no colour of its own. */
+  get hasFreeMasses(): boolean {
+    const kinds = this.matter.vertices.kind!.array;
+    return this.topology.masses.some((mass, mat) => mass > 0 && kinds[mat] === 0);
+  }
+
+  /** The full scale of the colours of forces [N]. */
+  get strongestForce(): number {
+    return this.strongest;
   }
 
   get fastestSpeed(): number {
@@ -492,7 +527,7 @@ export class SceneView {
       const dz = now[3 * i + 2]! - then[3 * i + 2]!;
       longest = Math.max(longest, dx * dx + dy * dy + dz * dz);
     }
-    this.fastest = Math.max(Math.sqrt(longest) / elapsedS, 0.985 * this.fastest);
+    this.fastest = Math.max(Math.sqrt(longest) / elapsedS, FALL * this.fastest);
     this.uniforms.speed_scale = this.fastest > 0 ? 1 / (this.fastest * elapsedS) : 1;
   }
 }
