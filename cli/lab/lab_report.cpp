@@ -37,6 +37,15 @@ const char* prediction(const plan::Stability& stability, const LabRun& run) {
   return step > stability.diverging_step ? "unstable" : "not certain";
 }
 
+std::string prediction_text(const std::string& integrator, const plan::Stability& stability) {
+  std::string text = fmt::format("predicted   {}: ", integrator);
+  if (!stability.uncertainty)
+    text += fmt::format("certified from {}, ", rate_of(stability.certified.step));
+  return text + (std::isfinite(stability.diverging_step)
+                     ? "surely unstable below " + rate_of(stability.diverging_step) + "\n"
+                     : "at no rate surely unstable\n");
+}
+
 std::string run_text(const LabReport& report, const LabRun& run) {
   const plan::TrialResult& result = run.result;
   const std::string instructions =
@@ -87,8 +96,7 @@ std::string text_of(const LabReport& report) {
   for (const std::string& port : report.lab.ports) text += "port        " + port + "\n";
   text += reference_text(report.reference);
   for (const auto& [integrator, stability] : report.stability) {
-    text += fmt::format("predicted   {}: certified from {}, surely unstable below {}\n", integrator,
-                        rate_of(stability.certified.step), rate_of(stability.diverging_step));
+    text += prediction_text(integrator, stability);
     if (!stability.uncertainty) continue;
     text += fmt::format("            not certain: {}: {}\n",
                         scene::call_liaison(scene, stability.uncertainty->liaison).name,

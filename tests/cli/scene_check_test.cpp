@@ -217,6 +217,45 @@ TEST_F(Checked, WhatIsStableAtAnyStepHasNoLimit) {
       << out_;
 }
 
+TEST_F(Checked, NothingIsCertifiedOfWhatIsNotCertain) {
+  std::ofstream(path_) << R"(cordis: 1
+name: stars
+space: 2
+step: {rate_hz: 4000}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0]}
+  b: {kind: mass, mass_kg: 2, at_m: [3, 0], velocity_m_per_s: [0, 1]}
+liaisons:
+  gravitation: {elasticity: "mass_a_kg*mass_b_kg/distance_m^2"}
+links:
+  - {liaison: gravitation, between: [a, b], rest_m: 0}
+)";
+  ASSERT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("not certain: gravitation"), std::string::npos) << out_;
+  EXPECT_EQ(out_.find("certified"), std::string::npos) << out_;
+  EXPECT_EQ(out_.find("no step is too long"), std::string::npos) << out_;
+}
+
+TEST_F(Checked, WhatCollisionsGainAddsUpWhereItIsMuch) {
+  const auto bounces = [&](int rate) {
+    std::ofstream(path_) << "cordis: 1\nname: bounce\nspace: 1\nstep: {rate_hz: " << rate << R"(}
+world: {gravity_m_per_s2: -9.81}
+matter:
+  floor: {kind: fixed, at_m: 0}
+  ball: {kind: mass, mass_kg: 0.001, at_m: 0.03}
+liaisons:
+  contact: {kind: state_machine, stiffness_n_per_m: 700, pulls: false}
+links:
+  - {liaison: contact, between: [floor, ball], rest_m: 0.01}
+)";
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    EXPECT_NE(out_.find("one collision gains"), std::string::npos) << out_;
+    return out_.find("what collisions gain adds up") != std::string::npos;
+  };
+  EXPECT_TRUE(bounces(1000));   // K' = 0.7
+  EXPECT_FALSE(bounces(3000));  // 0.078
+}
+
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
   write("100",
         R"(  - {liaison: holder, between: [key, bob]}

@@ -221,6 +221,13 @@ TEST(Enclosure, IsNeverBelowTheSlopeAtAnyPlace) {
     EXPECT_GE(least, flattest - 0.2 * steepest - 1e-4) << l;
     EXPECT_GE(most.over_speed, viscous - 1e-4) << l;
     EXPECT_LE(most.over_speed, 1.2 * viscous + 1e-4) << l;
+    for (const int bisections : {1, 16}) {
+      box.bisections = bisections;
+      const plan::SteepestSlopes bound = plan::steepest_slopes(program, box);
+      EXPECT_GE(bound.over_distance, steepest - 1e-4) << l;
+      EXPECT_GE(bound.over_speed, viscous - 1e-4) << l;
+      EXPECT_LE(plan::flattest_slope(program, box, most.over_distance), flattest + 1e-4) << l;
+    }
   }
 }
 

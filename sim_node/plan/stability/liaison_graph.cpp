@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -297,14 +298,25 @@ void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
 
 namespace {
 
-/// The largest slopes of links with states: found once for all that are alike but for rounding.
+/// The largest slopes of links with states: found once for all that are alike but for rounding. Where
+/// many differ, as with rest lengths of their own, they share the bisections, and bounds are less near.
 class SlopesOfLinks {
  public:
   SlopesOfLinks(const NetworkDescription& network, const Reach& reach)
-      : network_(network), reach_(reach) {}
+      : network_(network), reach_(reach), bisections_(reach.bisections) {
+    std::set<std::pair<std::uint32_t, float>> different;
+    for (const engine::StateLink& link : network.state_links)
+      different.emplace(link.state_machine, static_cast<float>(link.rest_length));
+    constexpr std::size_t kThatTakeAll = 64;
+    constexpr std::size_t kFewest = 16;
+    const auto most = static_cast<std::size_t>(reach.bisections);
+    if (different.size() > kThatTakeAll)
+      bisections_ = static_cast<int>(std::max(kFewest, most * kThatTakeAll / different.size()));
+  }
 
   const Slope& slope_of(const engine::StateLink& link) {
-    const Reach here = reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+    Reach here = reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+    here.bisections = bisections_;
     const Key key{link.state_machine, static_cast<float>(link.rest_length), here.mass_a.low,
                   here.mass_b.low, here.held};
     const auto found = known_.find(key);
@@ -319,6 +331,7 @@ class SlopesOfLinks {
 
   const NetworkDescription& network_;
   const Reach& reach_;
+  int bisections_;  // of each
   std::map<Key, Slope> known_;
 };
 

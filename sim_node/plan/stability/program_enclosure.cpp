@@ -376,18 +376,17 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
 }
 
 constexpr double kNearEnough = 0.02;
-constexpr int kBisections = 2000;  // for the largest slope, which decides the step
-constexpr int kFewBisections = 200;
 
 }  // namespace
 
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
+  CORDIS_ASSERT(box.bisections > 0);
   const auto rise = [](const Interval& slope) { return std::max(0.0, slope.high); };
   const auto enough = [](double most, double reached) {
     return most <= (1.0 + kNearEnough) * std::max(0.0, reached);
   };
-  return {steepest(program, box, 0, rise, enough, kBisections),
-          steepest(program, box, 1, rise, enough, kBisections)};
+  return {steepest(program, box, 0, rise, enough, box.bisections),
+          steepest(program, box, 1, rise, enough, box.bisections)};
 }
 
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest) {
@@ -395,7 +394,7 @@ double flattest_slope(const engine::Program& program, const LinkBox& box, double
   const auto enough = [largest](double most, double reached) {
     return most <= reached + kNearEnough * largest;
   };
-  return -steepest(program, box, 0, fall, enough, kFewBisections);
+  return -steepest(program, box, 0, fall, enough, (box.bisections + 9) / 10);
 }
 
 ProgramEnclosure enclosure_of(const engine::Program& program, const LinkBox& box) {

@@ -26,6 +26,7 @@ struct LinkBox {
   Interval force = kAnyNumber;       ///< tension [N], for conditions as the next two
   Interval remembered = kAnyNumber;  ///< age [s], impulse [N s] and stretch of friction [m]
   bool rest_moves = false;           ///< nothing is known of the rest length, nor of the elongation
+  int bisections = 2000;             ///< at most, for the largest slope; > 0
 };
 
 /// No tangent of the program in a box is above these: over the distance, and over the speed.
@@ -36,11 +37,11 @@ struct SteepestSlopes {
 };
 
 /// By interval arithmetic on value and derivatives, the box bisected where it is steepest, to 2 %
-/// where so many bisections are enough. Precondition: well-formed, of quantities known to laws.
+/// where the bisections of the box are enough. Precondition: well-formed, of quantities known to laws.
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
-/// No tangent of the program over the distance in a box is below this, found likewise with fewer
-/// bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.
+/// No tangent of the program over the distance in a box is below this, found likewise with a tenth
+/// of the bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest);
 
 /// What the value and its slopes lie within over a box; any number where it is not known.

@@ -98,6 +98,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
               rest_length,
               reach.mass_a,
               reach.mass_b};
+  box.bisections = reach.bisections;
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const Interval within = box.distance;
   const SteepestSlopes near = steepest_slopes(program, box);
