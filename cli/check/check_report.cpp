@@ -176,7 +176,8 @@ std::string contact_text(const SceneCheck& check) {
       fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}{}\n",
                   100.0 * contact->worst, liaison.name, location(liaison));
   if (contact->worst >= kGainThatAddsUp)
-    text += "            without viscosity what collisions gain adds up, in the end without a limit\n";
+    text +=
+        "            without viscosity what collisions gain adds up, in the end without a limit\n";
   return text;
 }
 

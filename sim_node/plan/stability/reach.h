@@ -30,7 +30,7 @@ struct Reach {
   /// The first link with states whose potential falls without an end; what it brings in is not in
   /// `brought`.
   std::optional<std::uint32_t> endless = {};
-  int bisections = LinkBox{}.bisections;  ///< that the slope of an expression may take
+  int bisections = LinkBox{}.bisections;  ///< at most, for the slope of an expression; > 0
 };
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
