@@ -290,6 +290,14 @@ TEST_F(ControlWithoutDevices, ASceneAsFastAsPossibleExecutesThemTheSame) {
 class ControlInRealtime : public Control {
  protected:
   ControlInRealtime() : Control("realtime") {}
+
+  void runs_at(double rate_hz) {
+    for (const char* node : {"sim", "keyboard"}) {
+      EXPECT_TRUE(status_.wait_for(node, [&](const msg::NodeStatus& now) {
+        return std::abs(now.target_rate_hz() - rate_hz) < 1e-6 && now.phase() == msg::PHASE_RUNNING;
+      })) << node;
+    }
+  }
 };
 
 TEST_F(ControlInRealtime, TheKeyFeelsNothingWhileTheScenePausesAndComesBackGradually) {
@@ -337,13 +345,6 @@ TEST_F(ControlInRealtime, SlowMotionIsFollowedByTheKeyAndSilencesNobody) {
         "sim", [&](const msg::NodeStatus& now) { return now.step() > begin.step() + steps; }));
     return pace_between(begin, status_.of("sim"));
   };
-  const auto runs_at = [&](double rate_hz) {
-    for (const char* node : {"sim", "keyboard"}) {
-      EXPECT_TRUE(status_.wait_for(node, [&](const msg::NodeStatus& now) {
-        return std::abs(now.target_rate_hz() - rate_hz) < 1e-6 && now.phase() == msg::PHASE_RUNNING;
-      })) << node;
-    }
-  };
   runs_at(1000.0);
   const double full = pace(8000);
 
@@ -379,6 +380,32 @@ TEST_F(ControlInRealtime, SlowMotionIsFollowedByTheKeyAndSilencesNobody) {
   expect_done({"rate", "0.5"}, "plays 0.5 times");
   expect_done({"load", "stiff.yaml"}, "'wall' begins");
   runs_at(1000.0);
+}
+
+/// Steps of the scene and ticks of the key are counted over the same time, whatever that is.
+TEST_F(ControlInRealtime, ADeviceThatRestartsInSlowMotionComesBackAtTheSlowPace) {
+  start();
+  expect_done({"rate", "0.1"}, "sim: plays 0.1 times as fast as in real time");
+  runs_at(100.0);
+  const std::uint64_t old_epoch = status_.of("keyboard").epoch();
+  session_.node("keyboard").signal(SIGKILL);
+  ASSERT_EQ(session_.node("keyboard").wait(kPatience), 128 + SIGKILL);
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_WAITING));
+
+  session_.start("device_node", "keyboard");
+  ASSERT_TRUE(status_.wait_for("keyboard", [&](const msg::NodeStatus& now) {
+    return now.epoch() != old_epoch && now.phase() == msg::PHASE_RUNNING;
+  }));
+  runs_at(100.0);
+  dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
+  msg::GestureForces force;
+  EXPECT_TRUE(feels(2.0, forces, force));
+
+  const std::uint64_t step = status_.of("sim").step();
+  const std::uint64_t ticks = status_.of("keyboard").ticks();
+  ASSERT_TRUE(status_.wait_for(
+      "keyboard", [&](const msg::NodeStatus& now) { return now.ticks() > ticks + 500; }));
+  EXPECT_GT(status_.of("sim").step(), step + 250) << "a key at full pace is ten times as fast";
 }
 
 /// A process that describes the keyboard as one that moves something real, as long as this lives.
