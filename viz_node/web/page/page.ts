@@ -32,7 +32,7 @@ import { TakeBar } from './take.ts';
 import { imageOfView } from './view_image.ts';
 
 const FIGURES_PERIOD_MS = 200;
-const PLOTS_PERIOD_MS = 60;
+const PLOTS_PERIOD_MS = 100;
 const MOST_ERRORS = 20;
 const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the view does not come back';
 
