@@ -37,6 +37,8 @@ endif()
 if(CORDIS_SANITIZE)
   target_compile_options(cordis_options INTERFACE
     -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+    # What ends the program anyway, or what the address sanitizer finds, takes a quarter of the time of a compiler.
+    $<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null,object-size,vptr,nonnull-attribute,returns-nonnull-attribute>
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # g++ 12 has false alarms about the standard library
   target_link_options(cordis_options INTERFACE -fsanitize=${CORDIS_SANITIZE})
 endif()

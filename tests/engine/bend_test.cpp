@@ -166,7 +166,7 @@ TEST_P(BentChain, KeepsItsEnergyOverALongRun) {
   World world = make_world(curled_chain(GetParam(), 0.0));
   const double before = world.energy().total();
   double largest = 0.0;
-  for (int n = 0; n < 300'000; ++n) {
+  for (int n = 0; n < rounds(300'000); ++n) {
     world.step();
     if (n % 16 != 0) continue;
     const engine::Energy energy = world.energy();

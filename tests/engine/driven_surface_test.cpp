@@ -14,6 +14,7 @@
 #include "tests/engine/rubbing.h"
 #include "tests/engine/surfaces.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -163,7 +164,7 @@ TEST(DrivenSurface, ThatMovesEvenlyPushesAsAFixedOneInItsFrame) {
     World fixed = make_world(seen.fixed);
     World driven = make_world(seen.driven);
     double pushed = 0.0;
-    for (int n = 1; n <= 1000; ++n) {
+    for (int n = 1; n <= rounds(1000); ++n) {
       fixed.step();
       driven.step();
       const Vec3 way = n * seen.driven.step * seen.velocity;
@@ -219,17 +220,17 @@ TEST(DrivenSurface, HasTheSameBitsOnEveryVectorWidthAndAfterRestore) {
     std::optional<std::uint64_t> hash;
     for (const engine::VectorWidth width : engine::supported_vector_widths()) {
       World world = make_world(seen.driven, width);
-      run(world, 400);
+      run(world, rounds(400));
       const engine::Snapshot snapshot = world.snapshot();
       const double total = world.energy().total();
-      run(world, 500);
+      run(world, rounds(500));
       if (!hash) hash = world.state_hash();
       EXPECT_EQ(world.state_hash(), *hash) << seen.name << to_string(width);
       World elsewhere = make_world(seen.driven, width);
       for (World* other : {&world, &elsewhere}) {
         other->restore(snapshot);
         EXPECT_EQ(other->energy().total(), total) << seen.name << to_string(width);
-        run(*other, 500);
+        run(*other, rounds(500));
         EXPECT_EQ(other->state_hash(), *hash) << seen.name << to_string(width);
       }
     }

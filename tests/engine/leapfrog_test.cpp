@@ -9,6 +9,7 @@
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/reference_data.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -175,7 +176,7 @@ TEST_P(LeapfrogConservation, KeepsMomentumAndAngularMomentum) {
   const Vec3 angular = world.angular_momentum();
   ASSERT_GT(momentum.norm(), 0.1);
 
-  run(world, 10000);
+  run(world, rounds(10000));
 
   EXPECT_LT((world.momentum() - momentum).norm(), 5e-11);  // rounding: see conservation_test.cpp
   EXPECT_LT((world.angular_momentum() - angular).norm(), 5e-11);

@@ -148,7 +148,11 @@ NetworkDescription struck(NetworkDescription scene) {
   return scene;
 }
 
-constexpr double kViscosities[] = {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
+/// Z' of the tests; three of them under sanitizers.
+std::vector<double> viscosities() {
+  if (rounds(2) == 1) return {0.01, 1.0, 100.0};
+  return {0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0};
+}
 constexpr double kStiffness = 5e-5;
 
 class OverdampedChain : public testing::TestWithParam<int> {};
@@ -160,7 +164,7 @@ Errors settled_errors(NetworkDescription scene) {
 
 TEST_P(OverdampedChain, CreepsAsTheMatrixExponential) {
   std::printf("masses  Z'     displaced  half step  struck     half step\n");
-  for (const double viscosity : kViscosities) {
+  for (const double viscosity : viscosities()) {
     const NetworkDescription scene = chain(GetParam(), kStiffness, viscosity, 1e-3);
     const NetworkDescription half = chain(GetParam(), kStiffness, viscosity, 5e-4);
     const double placed = settled_errors(displaced(scene)).position;
@@ -186,7 +190,7 @@ TEST_P(OverdampedChain, CreepsAsTheMatrixExponential) {
 TEST_P(OverdampedChain, CreepsWithTheOtherIntegratorsAsTheirOrderLets) {
   for (const auto kind :
        {IntegratorKind::kCordis, IntegratorKind::kImplicit, IntegratorKind::kModal}) {
-    for (const double viscosity : kViscosities) {
+    for (const double viscosity : viscosities()) {
       NetworkDescription scene = chain(GetParam(), kStiffness, viscosity, 1e-3);
       scene.integrator = kind;
       const double placed = settled_errors(displaced(scene)).position;
@@ -238,7 +242,7 @@ TEST(Overdamped, NetsAndMediaCreepAsTheMatrixExponential) {
   };
   for (const auto kind : {IntegratorKind::kLeapfrog, IntegratorKind::kCordis,
                           IntegratorKind::kImplicit, IntegratorKind::kModal}) {
-    for (const double viscosity : kViscosities) {
+    for (const double viscosity : viscosities()) {
       for (Case& each :
            std::vector<Case>{{"net", true, net(kStiffness, viscosity, 1e-3)},
                              {"1 in medium", false, in_medium(1, kStiffness, viscosity, 1e-3)},
@@ -343,7 +347,7 @@ Eigen::MatrixXd end_of(NetworkDescription scene, double step) {
 // turn in a step becomes small.
 TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
   int compared = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < 40; seed += kSeedStride) {
     NetworkDescription scene = random_damped_network(seed, 2, 3.125e-5);
     if (!engine::damps_implicitly(scene)) continue;
     const Eigen::MatrixXd truth = end_of(scene, 7.8125e-6);
@@ -356,7 +360,7 @@ TEST(Overdamped, RandomNetworksOfTwoDimensionsComeToSecondOrder) {
     ++compared;
     EXPECT_GT(coarse / error(3.125e-5), 8.0) << seed;  // 16 at second order
   }
-  EXPECT_GT(compared, 20);
+  EXPECT_GT(compared, rounds(20));
 }
 
 TEST(Overdamped, AccountsForWhatDampersTakeToRounding) {

@@ -18,6 +18,7 @@
 #include "sim_node/engine/links/state_table.h"
 #include "tests/engine/programs.h"
 #include "tests/engine/scenes.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -375,7 +376,7 @@ Term random_term(std::mt19937& random, int depth) {
 TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
   std::mt19937 random(1990);
   int finite = 0;
-  for (int n = 0; n < 10'000; ++n) {
+  for (int n = 0; n < rounds(10'000); ++n) {
     const Term term = random_term(random, 5);
     ASSERT_NO_THROW(engine::check_program(term.program, "random"));
     Rows rows;
@@ -398,7 +399,7 @@ TEST_P(Programs, AgreeWithTheirMeaningForTenThousandRandomOnes) {
       ASSERT_EQ(bits(found[i]), bits(expected[i])) << "program " << n << ", row " << i;
     }
   }
-  EXPECT_GT(finite, 40'000);
+  EXPECT_GT(finite, rounds(40'000));
 }
 
 }  // namespace

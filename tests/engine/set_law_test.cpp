@@ -341,6 +341,7 @@ TEST(SetLiaison, GoesOnWithoutBallsThatAreNotFinite) {
 }
 
 TEST(SetLiaison, ReportsThatItHasNoRoomForItsPairsAndIsRightAllTheSame) {
+  if (rounds(2) == 1) GTEST_SKIP() << "34 million pairs take half a minute under sanitizers";
   // 8,300 balls in a heap are 34 million pairs: more than a neighbour list takes
   NetworkDescription scene = cloud(8300, 0.01, 0.0, 3);
   add_set(scene, contact(1.0, 0.0), kSetRange, -1.0, 8300);

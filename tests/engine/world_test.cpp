@@ -9,6 +9,7 @@
 
 #include "tests/engine/scenes.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -258,7 +259,7 @@ TEST(World, KeepsItsAngularMomentumFor20Seconds) {
     world.step();
     const Vec3 start = world.angular_momentum();
     double largest = 0.0;
-    for (int n = 0; n < 20; ++n) {
+    for (int n = 0; n < rounds(20); ++n) {
       run(world, static_cast<int>(rate));
       largest = std::max(largest, (world.angular_momentum() - start).norm() / start.norm());
     }

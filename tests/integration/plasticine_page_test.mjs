@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { drawn, openPage, viz } from '../viz/browser.mjs';
 import { out, program, runCases, Session, source, until } from '../viz/session.mjs';
 
-const STEP_MS = 30;
+const STEP_S = 0.03; // of the scene: where a machine is busy the mouse waits for what it drags
 const STEPS = 15; // of the mouse, on each of the ways
 const IN_M = 0.115; // from its rest the thimble goes so far into the slab, ...
 const ACROSS_M = 0.09; // ... so far across, out of its edge, ...
@@ -25,8 +25,9 @@ async function drag(page, from, metresPerPixel) {
     for (let n = 0; n < STEPS; ++n) {
       x += right / metresPerPixel / STEPS;
       y -= up / metresPerPixel / STEPS;
+      const { simulatedS } = await viz(page, 'lastFrame');
       await page.mouse.move(x, y);
-      await page.waitForTimeout(STEP_MS);
+      await until('the scene has followed', async () => (await viz(page, 'lastFrame')).simulatedS > simulatedS + STEP_S);
     }
   }
 }
