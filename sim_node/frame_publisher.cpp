@@ -32,6 +32,7 @@ static_assert(static_cast<int>(engine::Quantity::kMassA) == msg::QUANTITY_MASS_A
 static_assert(static_cast<int>(engine::Quantity::kMassB) == msg::QUANTITY_MASS_B);
 static_assert(engine::kNoLink == msg::NO_INDEX);
 static_assert(kLinkIsIdle == msg::LINK_IS_IDLE);
+static_assert(kMaxBonds == msg::MAX_BONDS);
 
 /// The contract adds quantities at its end, after QUANTITY_NONE.
 msg::EventQuantity message_of(engine::Quantity quantity) noexcept {

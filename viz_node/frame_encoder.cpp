@@ -57,7 +57,11 @@ std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) no
       .put(header.simulated_s)
       .put(header.mat_count)
       .put(header.link_state_count)
-      .put(header.dropped);
+      .put(header.dropped)
+      .put(header.bond_count)
+      .put(header.bonds_left_out)
+      .put(header.set_count)
+      .put(header.port_count);
   return bytes;
 }
 

@@ -11,16 +11,16 @@
 namespace cordis::viz {
 
 inline constexpr std::uint32_t kMagic = 0x31534443;  // the bytes "CDS1"
-inline constexpr std::uint8_t kProtocolVersion = 3;
-inline constexpr std::size_t kFrameHeaderBytes = 72;
+inline constexpr std::uint8_t kProtocolVersion = 4;
+inline constexpr std::size_t kFrameHeaderBytes = 88;
 inline constexpr std::size_t kSignalsHeaderBytes = 48;
 inline constexpr std::size_t kTopologyHeaderBytes = 24;
 inline constexpr std::size_t kSoundHeaderBytes = 48;
 
 enum class MessageType : std::uint8_t { kFrame = 1, kSignals = 2, kTopology = 3, kSound = 4 };
 
-/// What stands before the positions of a frame. Positions and link states follow as they came over
-/// DDS.
+/// What stands before the positions of a frame. Positions, bonds, forces on ports and states follow as
+/// they came over DDS.
 struct FrameHeader {
   std::uint32_t sequence = 0;  ///< counts what viz_node has shown, from 1; a page acknowledges it
   std::uint32_t scene = 0;     ///< the description it belongs to
@@ -32,6 +32,10 @@ struct FrameHeader {
   std::uint32_t mat_count = 0;
   std::uint32_t link_state_count = 0;
   std::uint32_t dropped = 0;  ///< frames that this client was not sent, since it came
+  std::uint32_t bond_count = 0;
+  std::uint32_t bonds_left_out = 0;
+  std::uint32_t set_count = 0;   ///< number of sets of the description, or 0
+  std::uint32_t port_count = 0;  ///< likewise
 };
 
 std::array<std::uint8_t, kFrameHeaderBytes> encode(const FrameHeader& header) noexcept;

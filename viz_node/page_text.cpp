@@ -138,6 +138,16 @@ Json state_machines(const std::vector<msg::StateMachineDescription>& described) 
   return list;
 }
 
+Json sets(const std::vector<msg::SetDescription>& described) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(described.size(), kMaxNames); ++i) {
+    list.push_back({{"name", clipped(described[i].name())},
+                    {"state_machine", described[i].state_machine()},
+                    {"start_state", described[i].start_state()}});
+  }
+  return list;
+}
+
 Json changes(const std::vector<msg::LiaisonChanges>& counted) {
   Json list = Json::array();
   for (std::size_t i = 0; i < std::min(counted.size(), kMaxStates); ++i) {
@@ -332,6 +342,7 @@ std::string description_text(const msg::SceneDescription& description, std::uint
                   {"matter", ranges(description.matter())},
                   {"links", ranges(description.links())},
                   {"state_machines", state_machines(description.state_machines())},
+                  {"sets", sets(description.sets())},
                   {"ports", ports(description.ports(), description.port_frames())},
                   {"signals", std::move(signals)},
                   {"surfaces", surfaces(description)},

@@ -52,6 +52,21 @@ bool has_shape(const msg::SurfaceDescription& surface) {
   return false;
 }
 
+/// What is wrong with the bonds of a frame; empty when nothing is.
+std::string fault_of_bonds(const msg::SceneFrame& frame, const msg::SceneDescription& description) {
+  const std::size_t mats = description.mat_kind().size();
+  const std::size_t bonds = frame.bond_state().size();
+  if (frame.bond_ends().size() != 2 * bonds)
+    return count_fault("ends of bonds in a frame", frame.bond_ends().size(), 2 * bonds);
+  if (std::ranges::any_of(frame.bond_ends(), [mats](auto mat) { return mat >= mats; }))
+    return "a bond of a frame joins a MAT that does not exist";
+  if (!frame.bond_count().empty() && frame.bond_count().size() != description.sets().size())
+    return count_fault("sets in a frame", frame.bond_count().size(), description.sets().size());
+  std::size_t counted = 0;
+  for (const std::uint32_t count : frame.bond_count()) counted += count;
+  return counted == bonds ? "" : count_fault("bonds of sets in a frame", counted, bonds);
+}
+
 bool is_rate(double rate_hz) {
   return std::isfinite(rate_hz) && rate_hz > 0.0;
 }
@@ -103,6 +118,10 @@ std::string fault_of(const msg::SceneDescription& description) {
                        description.surfaces().size());
   if (std::ranges::any_of(surface_mat, [mats](auto mat) { return mat >= mats; }))
     return "a surface of the description is at a MAT that does not exist";
+  const std::size_t machines = description.state_machines().size();
+  if (std::ranges::any_of(description.sets(),
+                          [machines](auto& set) { return set.state_machine() >= machines; }))
+    return "a set of the description has a state machine that does not exist";
   return {};
 }
 
@@ -116,7 +135,12 @@ std::string fault_of(const msg::SceneFrame& frame, const msg::SceneDescription& 
   if (!std::isfinite(frame.simulated_s())) return "a frame without a simulated time";
   if (!std::ranges::all_of(frame.position_m(), [](float x) { return std::isfinite(x); }))
     return "a frame with a position that is not a finite number";
-  return {};
+  const std::size_t forces = frame.port_force_n().size();
+  if (forces != 0 && forces != 3 * description.ports().size())
+    return count_fault("forces on ports in a frame", forces, 3 * description.ports().size());
+  if (!std::ranges::all_of(frame.port_force_n(), [](float n) { return std::isfinite(n); }))
+    return "a frame with a force that is not a finite number";
+  return fault_of_bonds(frame, description);
 }
 
 std::string fault_of(const msg::SceneEvents& events, const msg::SceneDescription& description) {

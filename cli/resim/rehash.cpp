@@ -1,6 +1,8 @@
 // cli/resim/rehash.cpp
 #include "cli/resim/rehash.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
@@ -21,7 +23,8 @@ namespace {
 using ComputedFrames =
     std::map<std::pair<std::uint64_t, std::uint64_t>, const FrameCheck::Computed*>;
 
-/// The payload of a frame as it is now.
+/// The payload of a frame as it is now, with as many fields as its take says: one of an older version
+/// ends sooner.
 std::vector<std::byte> renewed_frame(const mcap::Message& message, const ComputedFrames& frames) {
   msg::SceneFrame frame;
   const auto found =
@@ -30,7 +33,9 @@ std::vector<std::byte> renewed_frame(const mcap::Message& message, const Compute
   const FrameCheck::Computed& computed = *found->second;
   frame.position_hash(computed.position_hash);
   frame.position_m(computed.position_m);
-  return dds::encode(frame);
+  std::vector<std::byte> payload = dds::encode(frame);
+  payload.resize(std::min(payload.size(), message.data.size()));
+  return payload;
 }
 
 std::vector<std::byte> renewed_inputs(const mcap::Message& message) {

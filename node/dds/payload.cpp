@@ -29,11 +29,21 @@ std::size_t missing_bytes(typename TypeOf<Message>::Type& type, Message& message
   return is_older ? sizeof(double) : 0;
 }
 
-/// The last wire versions whose SceneDescription ends without `surface_mat`, `colours`, `surfaces`,
-/// `port_frames`: each lacks what stands before it in this list as well.
-constexpr std::array<std::uint32_t, 4> kLastWithout{7, 5, 4, 3};
+/// The last wire versions whose SceneDescription ends without `sets`, `surface_mat`, `colours`,
+/// `surfaces`, `port_frames`: each lacks what stands before it in this list as well.
+constexpr std::array<std::uint32_t, 5> kLastWithout{8, 7, 5, 4, 3};
 
 constexpr std::size_t kCount = 4;  // bytes of the count of a sequence
+
+/// Bytes that a SceneFrame of wire version 8 lacks: the counts of `bond_ends`, `bond_state`,
+/// `bond_count` and `port_force_n`, and `bonds_left_out`.
+constexpr std::size_t kFrameTail = 5 * kCount;
+
+/// True if nothing of what a SceneFrame has had since version 9 is in it.
+bool has_no_tail(const msg::SceneFrame& frame) noexcept {
+  return frame.bond_ends().empty() && frame.bond_state().empty() && frame.bond_count().empty() &&
+         frame.bonds_left_out() == 0 && frame.port_force_n().empty();
+}
 
 /// Bytes of an empty sequence behind a payload of `size` bytes, alignment included.
 constexpr std::size_t empty_sequence_bytes(std::size_t size) noexcept {
@@ -70,6 +80,8 @@ bool decode(std::span<const std::byte> payload, Message& message) noexcept {
         missing_sequences += kCount;
       }
     }
+    if constexpr (std::is_same_v<Message, msg::SceneFrame>)
+      return decode_padded(type, payload, kFrameTail, message) && has_no_tail(message);
     return false;
   } catch (...) {  // lengths of sequences are as hostile as any other number
     return false;

@@ -1,6 +1,7 @@
 // sim_node/run/describe.cpp
 #include "sim_node/run/describe.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -150,6 +151,22 @@ void report_states(const engine::NetworkDescription& network, msg::SceneDescript
 
 }  // namespace
 
+std::vector<std::size_t> state_sets_of(const scene::Scene& scene) {
+  std::vector<std::size_t> sets;
+  const engine::NetworkDescription& network = scene.network;
+  const auto is_surface = [&network](std::uint32_t mat) {
+    return std::ranges::find(network.surfaces, mat, &engine::Surface::mat) !=
+           network.surfaces.end();
+  };
+  for (std::size_t set = 0; set < network.sets.size(); ++set) {
+    const engine::SetLiaison& liaison = network.sets[set];
+    const bool has_states = !network.state_machines[liaison.state_machine].is_stateless();
+    const bool has_surfaces = !liaison.set_p.empty() && is_surface(liaison.set_p.front());
+    if (has_states && !has_surfaces) sets.push_back(set);
+  }
+  return sets;
+}
+
 msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
                                std::uint64_t version) {
   msg::SceneDescription description;
@@ -183,6 +200,14 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   for (const engine::Surface& surface : scene.network.surfaces) {
     description.surfaces().push_back(surface_of(scene, surface, layout));
     description.surface_mat().push_back(surface.mat);
+  }
+  for (const std::size_t set : state_sets_of(scene)) {
+    const std::uint32_t state_machine = scene.network.sets[set].state_machine;
+    msg::SetDescription message;
+    message.name(scene.set_names[set]);
+    message.state_machine(state_machine);
+    message.start_state(scene.network.state_machines[state_machine].start);
+    description.sets().push_back(message);
   }
   for (const scene::Signal& signal : scene.signals.signals()) {
     msg::SignalDescription message;

@@ -6,8 +6,8 @@
 
 namespace cordis::sim {
 
-/// Puts what a buffer holds of the scene itself into a message: positions, states of links, step,
-/// times and hash. Its epoch and number stay.
+/// Puts what a buffer holds of the scene itself into a message: positions, states of links,
+/// bonds, forces on ports, step, times and hash. Its epoch and number stay.
 void put_frame(const FrameShape& shape, const FrameBuffer& buffer, msg::SceneFrame& frame);
 
 }  // namespace cordis::sim

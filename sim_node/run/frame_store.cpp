@@ -14,6 +14,27 @@ std::uint8_t shown_state(const engine::World& world, std::uint32_t link) noexcep
   return static_cast<std::uint8_t>(world.state_of(link) + idle);
 }
 
+/// Where the bonds of one set go.
+struct BondsOfSet {
+  FrameBonds& bonds;
+  const std::vector<engine::LinkState>& states;
+  std::uint32_t count = 0;
+};
+
+void show_bond(void* owner, const engine::BoundPair& pair) {
+  BondsOfSet& set = *static_cast<BondsOfSet*>(owner);
+  FrameBonds& bonds = set.bonds;
+  if (bonds.shown == bonds.state.size()) {
+    ++bonds.left_out;
+    return;
+  }
+  const std::uint8_t idle = engine::is_idle(set.states[pair.state]) ? kLinkIsIdle : 0;
+  bonds.ends[2 * bonds.shown] = pair.mat_a;
+  bonds.ends[2 * bonds.shown + 1] = pair.mat_b;
+  bonds.state[bonds.shown++] = static_cast<std::uint8_t>(pair.state + idle);
+  ++set.count;
+}
+
 }  // namespace
 
 void FrameLayout::show(std::size_t mat, const double* position, float* shown) const noexcept {
@@ -39,6 +60,10 @@ FrameStore::FrameStore(FrameShape shape)
   for (FrameBuffer& buffer : buffers_) {
     buffer.positions.resize(4 * shape_.mat_count);
     buffer.link_state.resize(shape_.link_count);
+    buffer.bonds.ends.resize(2 * shape_.bond_capacity);
+    buffer.bonds.state.resize(shape_.bond_capacity);
+    buffer.bonds.count.resize(shape_.state_sets.size());
+    buffer.port_forces.resize(3 * shape_.port_mats.size());
     buffer.events = EventRoom(shape_.state_link_count);
     buffer.rows.resize(row_capacity_ * shape_.signal_count);
     buffer.row_steps.resize(row_capacity_);
@@ -77,6 +102,28 @@ bool FrameStore::has_news() const noexcept {
          overflowed_step_rows_ > 0 || !buffer.events.is_empty();
 }
 
+void FrameStore::copy_bonds(const engine::World& world, FrameBonds& bonds) const noexcept {
+  const engine::NetworkDescription& network = world.network().description();
+  bonds.shown = 0;
+  bonds.left_out = 0;
+  for (std::size_t i = 0; i < shape_.state_sets.size(); ++i) {
+    const std::size_t set = shape_.state_sets[i];
+    BondsOfSet of_set{bonds, network.state_machines[network.sets[set].state_machine].states};
+    world.visit_bound_pairs(set, show_bond, &of_set);
+    bonds.count[i] = of_set.count;
+  }
+}
+
+void FrameStore::copy_port_forces(const engine::World& world,
+                                  std::vector<double>& forces) const noexcept {
+  double* force = forces.data();
+  for (const std::vector<std::uint32_t>& mats : shape_.port_mats) {
+    engine::Vec3 sum = engine::Vec3::Zero();
+    for (const std::uint32_t mat : mats) sum += world.link_force(mat);
+    force = std::copy_n(sum.data(), 3, force);
+  }
+}
+
 void FrameStore::turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
                       std::int64_t action_nsec) noexcept {
   FrameBuffer& buffer = buffers_[filling_];
@@ -87,6 +134,8 @@ void FrameStore::turn(const engine::World& world, double simulated_s, std::int64
           shown_state(world, static_cast<std::uint32_t>(l));
     }
   }
+  copy_bonds(world, buffer.bonds);
+  copy_port_forces(world, buffer.port_forces);
   buffer.step = world.step_count();
   buffer.simulated_s = simulated_s;
   buffer.time_nsec = now_nsec;

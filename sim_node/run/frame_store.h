@@ -38,9 +38,24 @@ struct FrameShape {
   std::size_t link_count = 0;        ///< number of links of all kinds; 0 when no link has states
   std::size_t first_state_link = 0;  ///< number of the first one with states
   std::size_t state_link_count = 0;
+  std::vector<std::size_t> state_sets;  ///< sets of the network whose pairs have states
+  std::size_t bond_capacity = 0;        ///< most bonds in a frame
+  std::vector<std::vector<std::uint32_t>> port_mats;  ///< per port: the MATs that it moves
 };
 
-/// Added to the state of a link that neither pulls nor pushes in it, whatever its ends do: apart,
+/// The most bonds that a frame shows.
+inline constexpr std::size_t kMaxBonds = 16384;
+
+/// The pairs of sets that are in another state than that of the start. Room is made once.
+struct FrameBonds {
+  std::vector<std::uint32_t> ends;   ///< 2 per bond
+  std::vector<std::uint8_t> state;   ///< per bond, + kLinkIsIdle
+  std::vector<std::uint32_t> count;  ///< per set whose pairs have states
+  std::size_t shown = 0;             ///< bonds of all sets; `ends` and `state` have room for more
+  std::uint32_t left_out = 0;
+};
+
+/// Added to the state of a link or a bond that neither pulls nor pushes in it, whatever its ends do: apart,
 /// broken. A state machine has 64 states at most.
 inline constexpr std::uint8_t kLinkIsIdle = 128;
 
@@ -48,6 +63,8 @@ inline constexpr std::uint8_t kLinkIsIdle = 128;
 struct FrameBuffer {
   std::vector<double> positions;         ///< as World::positions()
   std::vector<std::uint8_t> link_state;  ///< link_state of SceneFrame: per link, or empty
+  FrameBonds bonds;
+  std::vector<double> port_forces;  ///< 3 per port, as World::link_force() [N]
   EventRoom events;
   std::vector<double> rows;
   std::size_t row_count = 0;
@@ -89,13 +106,16 @@ class FrameStore {
   bool has_news() const noexcept;
 
   /// Puts the present positions and states into the buffer being filled, which then is published(),
-  /// and begins to fill the other one. O(MATs + links). Precondition: no thread uses published().
+  /// and begins to fill the other one. O(MATs + links + pairs). Precondition: no thread uses published().
   void turn(const engine::World& world, double simulated_s, std::int64_t now_nsec,
             std::int64_t action_nsec = 0) noexcept;
 
   const FrameBuffer& published() const noexcept { return buffers_[1 - filling_]; }
 
  private:
+  void copy_bonds(const engine::World& world, FrameBonds& bonds) const noexcept;
+  void copy_port_forces(const engine::World& world, std::vector<double>& forces) const noexcept;
+
   static constexpr std::size_t kFramesOfRows = 8;  // rows kept while frames are left out
 
   FrameShape shape_;

@@ -16,8 +16,30 @@ std::size_t ticks_per_frame_of(const scene::Scene& scene) {
       std::max(1.0, std::round(scene.gesture_rate_hz / scene.frame_rate_hz)));
 }
 
+/// As many pairs as the sets whose pairs have states can have at most, or kMaxBonds.
+std::size_t max_bonds(const scene::Scene& scene, const std::vector<std::size_t>& state_sets) {
+  std::size_t pairs = 0;
+  for (const std::size_t set : state_sets) {
+    const std::size_t p = scene.network.sets[set].set_p.size();
+    const std::size_t q = scene.network.sets[set].set_q.size();
+    pairs = std::min(kMaxBonds, pairs + (q == 0 ? p * (p - 1) / 2 : p * q));
+  }
+  return pairs;
+}
+
+std::vector<std::vector<std::uint32_t>> port_mats_of(const scene::Scene& scene) {
+  std::vector<std::vector<std::uint32_t>> mats;
+  for (const scene::Port& port : scene.ports) {
+    mats.emplace_back();
+    for (const scene::BodyMass& mass : port.body) mats.back().push_back(mass.mat);
+    if (port.body.empty()) mats.back().push_back(port.mat);
+  }
+  return mats;
+}
+
 FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
   const scene::Scene& scene = simulation.scene();
+  const std::vector<std::size_t> state_sets = state_sets_of(scene);
   return {.version = version,
           .mat_count = scene.network.mats.size(),
           .signal_count = scene.signals.count(),
@@ -29,7 +51,10 @@ FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
           .layout = layout_of(scene),
           .link_count = scene.network.state_links.empty() ? 0 : link_count_of(scene),
           .first_state_link = scene.network.links.size(),
-          .state_link_count = scene.network.state_links.size()};
+          .state_link_count = scene.network.state_links.size(),
+          .state_sets = state_sets,
+          .bond_capacity = max_bonds(scene, state_sets),
+          .port_mats = port_mats_of(scene)};
 }
 
 plan::Stability stability_of(const scene::Scene& scene) {

@@ -48,7 +48,7 @@ test('the messages are those of the contract', () => {
     'gesture.idl': ['GesturePositions', 'GestureForces', 'DeviceDescription', 'PointerTarget', 'PointerState'],
     'inputs.idl': ['SourceFile', 'InputScene', 'InputSample', 'InputReach', 'InputEvent', 'SceneInputs'],
     'scene.idl': [
-      'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SurfaceDescription',
+      'NamedRange', 'PortDescription', 'PortFrame', 'SignalDescription', 'StateMachineDescription', 'SetDescription', 'SurfaceDescription',
       'ColouredRange', 'SceneDescription', 'SceneFrame', 'SceneSignals', 'SceneSound', 'LinkEvent', 'SceneEvents',
     ],
     'topics.idl': [],

@@ -107,6 +107,18 @@ Sample any_frame() {
     message.link_state().push_back(static_cast<std::uint8_t>(any_u32()));
     states.push_back(message.link_state().back());
   }
+  json bond_ends = json::array();
+  json bond_states = json::array();
+  json forces = json::array();
+  for (std::size_t i = any_u32() % 5; i > 0; --i) {
+    message.bond_ends().insert(message.bond_ends().end(), {any_u32(), any_u32()});
+    message.bond_state().push_back(static_cast<std::uint8_t>(any_u32()));
+    bond_states.push_back(message.bond_state().back());
+    message.port_force_n().push_back(static_cast<float>(any_double()));
+    forces.push_back(static_cast<double>(message.port_force_n().back()));
+  }
+  for (const std::uint32_t end : message.bond_ends()) bond_ends.push_back(end);
+  message.bonds_left_out(any_u32());
   return {"scene/frame",
           "cordis::msg::SceneFrame",
           payload_of(message),
@@ -119,7 +131,12 @@ Sample any_frame() {
            {"simulated_s", message.simulated_s()},
            {"position_m", positions},
            {"position_hash", "0"},
-           {"link_state", states}}};
+           {"link_state", states},
+           {"bond_ends", bond_ends},
+           {"bond_state", bond_states},
+           {"bond_count", json::array()},
+           {"bonds_left_out", message.bonds_left_out()},
+           {"port_force_n", forces}}};
 }
 
 Sample any_events() {
@@ -225,6 +242,15 @@ Sample any_description() {
                        {"blue", range.blue()}});
     message.colours().push_back(range);
   }
+  json sets = json::array();
+  for (std::size_t i = any_u32() % 3; i > 0; --i) {
+    msg::SetDescription set;
+    set.name(any_text());
+    set.state_machine(any_u32());
+    sets.push_back(
+        {{"name", set.name()}, {"state_machine", set.state_machine()}, {"start_state", 0}});
+    message.sets().push_back(set);
+  }
   const json none = json::array();
   return {"scene/description",
           "cordis::msg::SceneDescription",
@@ -251,7 +277,8 @@ Sample any_description() {
            {"scene_file", ""},
            {"surfaces", surfaces},
            {"colours", colours},
-           {"surface_mat", surface_mat}}};
+           {"surface_mat", surface_mat},
+           {"sets", sets}}};
 }
 
 bool write_take(const std::filesystem::path& folder, mcap::Compression compression) {

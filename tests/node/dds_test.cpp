@@ -74,19 +74,20 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionIsReadWithoutWhatItLacks) {
   for (const char* file : {"s", "sc", "sce", "scen"}) {  // each alignment of what follows
     msg::SceneDescription description;
     description.scene_file(file);
-    for (const std::uint32_t version : {3u, 4u, 5u, 7u, 8u}) {
+    for (const std::uint32_t version : {3u, 4u, 5u, 7u, 8u, 9u}) {
       description.wire_version(version);
       std::vector<std::byte> payload = encode(description);
       msg::SceneDescription read;
       ASSERT_TRUE(decode(payload, read));
-      for (const std::uint32_t last : {7u, 5u, 4u, 3u}) {
-        // the count of `surface_mat`, of `colours`, of `surfaces`, of `port_frames`
+      for (const std::uint32_t last : {8u, 7u, 5u, 4u, 3u}) {
+        // the count of `sets`, `surface_mat`, `colours`, `surfaces`, `port_frames`
         payload.resize(payload.size() - 4);
         EXPECT_EQ(decode(payload, read), version <= last) << file << ", version " << version;
         if (version > last) continue;
         EXPECT_EQ(read.scene_file(), file);
-        EXPECT_TRUE(read.surface_mat().empty());
-        EXPECT_TRUE(last == 7u || read.colours().empty());
+        EXPECT_TRUE(read.sets().empty());
+        EXPECT_TRUE(last == 8u || read.surface_mat().empty());
+        EXPECT_TRUE(last >= 7u || read.colours().empty());
         EXPECT_TRUE(last >= 5u || read.surfaces().empty());
         EXPECT_TRUE(last >= 4u || read.port_frames().empty());
       }
@@ -101,7 +102,7 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   description.port_frames().resize(2);
   description.port_frames()[1].direction({0.0, 1.0, 0.5});
   std::vector<std::byte> payload = encode(description);
-  payload.resize(payload.size() - 12);  // the counts of `surfaces`, `colours` and `surface_mat`
+  payload.resize(payload.size() - 16);  // the counts of `surfaces` and of what follows it
   msg::SceneDescription read;
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.port_frames(), description.port_frames());
@@ -110,7 +111,7 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   description.surfaces().resize(1);
   description.surfaces()[0].size_m({0.25, 0.5, 0.125});
   payload = encode(description);
-  payload.resize(payload.size() - 8);  // the counts of `colours` and `surface_mat`
+  payload.resize(payload.size() - 12);  // the counts of `colours` and of what follows it
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.surfaces(), description.surfaces());
 
@@ -118,10 +119,51 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   description.colours().resize(1);
   description.colours()[0].red(77);
   payload = encode(description);
-  payload.resize(payload.size() - 5);  // the count of `surface_mat`, and what aligns it
+  payload.resize(payload.size() -
+                 9);  // the counts of `surface_mat` and `sets`, and what aligns them
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.surfaces(), description.surfaces());
   EXPECT_EQ(read.colours(), description.colours());
+
+  description.wire_version(8);
+  description.surface_mat({3});
+  payload = encode(description);
+  payload.resize(payload.size() - 4);  // the count of `sets`
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.surface_mat(), description.surface_mat());
+}
+
+TEST(Payload, OfAFrameHasItsBondsAndTheForcesOnItsPorts) {
+  msg::SceneFrame frame;
+  frame.position_m({1.0F, 2.0F, 3.0F});
+  frame.link_state({1, 129, 0});
+  frame.bond_ends({0, 1, 1, 70000});
+  frame.bond_state({1, 130});
+  frame.bond_count({0, 2});
+  frame.bonds_left_out(5);
+  frame.port_force_n({0.0F, -0.25F, 0.0F});
+  std::vector<std::byte> payload = encode(frame);
+  msg::SceneFrame read;
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read, frame);
+
+  payload.resize(payload.size() - 4);
+  EXPECT_FALSE(decode(payload, read)) << "cut short";
+}
+
+TEST(Payload, OfAFrameOfWireVersion8IsReadWithoutBonds) {
+  msg::SceneFrame frame;
+  frame.position_m({1.0F, 2.0F, 3.0F});
+  frame.link_state({1, 129});
+  frame.position_hash(7);
+  std::vector<std::byte> payload = encode(frame);
+  payload.resize(payload.size() - 20);  // four counts and bonds_left_out
+  msg::SceneFrame read;
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read, frame);
+
+  payload.pop_back();
+  EXPECT_FALSE(decode(payload, read)) << "cut short";
 }
 
 /// A reader with an Arrival takes samples out of DDS in the thread that receives them: one of DDS, or

@@ -271,6 +271,18 @@ TEST(Resim, SaysThatTheLastInputFoundNoRoom) {
             "input " + std::to_string(last + 1) + " is missing: sim_node had no room for it");
 }
 
+/// Bytes of each frame of a take.
+std::vector<std::size_t> frame_sizes(const std::filesystem::path& take) {
+  std::vector<std::size_t> sizes;
+  const mcap::Reader reader(take);
+  mcap::MessageCursor cursor = reader.messages();
+  for (mcap::Message message; cursor.next(message);) {
+    if (reader.channels().at(message.channel_id).topic == msg::TOPIC_FRAME)
+      sizes.push_back(message.data.size());
+  }
+  return sizes;
+}
+
 TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
   const mcap::TakeFolder folder;
   const std::filesystem::path old = folder / "old.mcap";
@@ -289,6 +301,8 @@ TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
   EXPECT_EQ(after.by, FrameCheck::By::kHash);
   EXPECT_TRUE(after.is_equal());
   EXPECT_EQ(after.findings.frames, before.findings.frames);
+  EXPECT_EQ(frame_sizes(old), frame_sizes(kGolden + "realtime_key.mcap"))
+      << "the schema in the take is that of its own wire version";
 }
 
 /// Writes a take with two lives of sim_node, of which the second counts its frames from 1 again.

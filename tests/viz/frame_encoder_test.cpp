@@ -20,7 +20,7 @@ Value value_at(const Bytes& bytes, std::size_t offset) {
 template <class Bytes>
 void expect_prefix(const Bytes& bytes, MessageType type, std::size_t header_bytes) {
   EXPECT_EQ(std::memcmp(bytes.data(), "CDS1", 4), 0);
-  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 3);
+  EXPECT_EQ(value_at<std::uint8_t>(bytes, 4), 4);
   EXPECT_EQ(value_at<std::uint8_t>(bytes, 5), static_cast<std::uint8_t>(type));
   EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), header_bytes);
 }
@@ -35,10 +35,14 @@ TEST(FrameEncoder, PutsTheFieldsOfAFrameWhereTheProtocolSays) {
                              .simulated_s = 7.5,
                              .mat_count = 8,
                              .link_state_count = 9,
-                             .dropped = 10});
+                             .dropped = 10,
+                             .bond_count = 11,
+                             .bonds_left_out = 12,
+                             .set_count = 13,
+                             .port_count = 14});
 
-  expect_prefix(bytes, MessageType::kFrame, 72);
-  ASSERT_EQ(bytes.size(), 72u);
+  expect_prefix(bytes, MessageType::kFrame, 88);
+  ASSERT_EQ(bytes.size(), 88u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), 1u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 2u);
   EXPECT_EQ(value_at<std::uint64_t>(bytes, 16), 3u);
@@ -49,7 +53,8 @@ TEST(FrameEncoder, PutsTheFieldsOfAFrameWhereTheProtocolSays) {
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 56), 8u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 60), 9u);
   EXPECT_EQ(value_at<std::uint32_t>(bytes, 64), 10u);
-  EXPECT_EQ(value_at<std::uint32_t>(bytes, 68), 0u);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(value_at<std::uint32_t>(bytes, 68 + 4 * k), 11 + k);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 84), 0u);
 }
 
 TEST(FrameEncoder, PutsSignalsRowAfterRowWithTheTimeOfTheFirst) {

@@ -86,7 +86,8 @@ const cases = {
       assert.ok(Math.abs(force[0]) < 1e-4 * largest + 1e-6 && Math.abs(force[2]) < 1e-4 * largest + 1e-6, 'it moves along y');
       await drawn(page, 1);
     }
-    assert.equal(await page.evaluate((mat) => window.viz.force(mat), PORT), null, 'a device moves it');
+    assert.deepEqual(await page.evaluate((mat) => window.viz.force(mat), PORT), [0, -0.25, 0], 'of a port it is what the liaisons do to it');
+    assert.equal(await page.evaluate(() => window.viz.force(0)), null, 'it is fixed');
     await page.keyboard.press('h');
     const without = await page.evaluate(inkOfMarks);
     assert.equal(await page.locator('#picked-force').getAttribute('aria-pressed'), 'false');

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { banner, drawn, look, openScenePage, textOf, viz } from './browser.mjs';
 import { out, runCases, source, until } from './session.mjs';
 
+const HANDLE = 12; // the MAT of the port
 const [FIRST_BODY, SECOND_BODY, HOOKED] = [20, 45, 23]; // two MATs, and a link that changes its state
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 const LEAST_CONTRAST = 4.5; // WCAG 2.1, 1.4.3: text of usual size
@@ -34,6 +35,19 @@ function inkAround({ x, y, reach }) {
   const { data } = sheet.getContext('2d').getImageData(left, top, size, size);
   return data.filter((_, i) => i % 4 === 3).filter((alpha) => alpha > 0).length;
 }
+
+/** How many places of 9 in the middle of the line between two MATs have a colour. */
+const colouredBetween = (page, a, b, hex) =>
+  page.evaluate(
+    ([from, to, wanted]) => {
+      const [p, q] = [window.viz.project(from), window.viz.project(to)];
+      const around = [[0, 0], [0, 1], [0, -1], [1, 0], [-1, 0]];
+      const hasIt = ([x, y]) => window.viz.pixelAt(x, y).every((byte, k) => Math.abs(byte - wanted[k]) < 40);
+      const places = Array.from({ length: 9 }, (_, k) => 0.3 + 0.05 * k).map((share) => [p.x + share * (q.x - p.x), p.y + share * (q.y - p.y)]);
+      return places.filter(([x, y]) => around.some(([dx, dy]) => hasIt([x + dx, y + dy]))).length;
+    },
+    [a, b, bytesOf(hex)],
+  );
 
 /** Clicks a place that moves, until the name of what is picked reads so. */
 async function pick(page, placeOf, name) {
@@ -332,6 +346,51 @@ const cases = {
     await until('it fills the screen', fills);
     await page.keyboard.press('u');
     await until('it has left the screen', async () => !(await fills()));
+  },
+
+  'the force on a port is said, and drawn when arrows are wanted': async ({ page }) => {
+    const below = async () => {
+      const { x, y } = await page.evaluate((mat) => window.viz.project(mat), HANDLE);
+      return page.evaluate(inkAround, { x, y: y + 70, reach: 12 });
+    };
+    assert.deepEqual(await page.evaluate((mat) => window.viz.force(mat), HANDLE), [0, -0.25, 0]);
+    assert.equal(await below(), 0);
+    await page.keyboard.press('a');
+    assert.equal(await isPressed(page, 'a'), 'true');
+    await until('an arrow points down', async () => (await below()) > 20);
+    await pick(page, placeOf(page, HANDLE), /./);
+    await until('its panel says the force', async () => / · force on the port 250\s?mN$/.test(await textOf(page, '#picked-values')));
+    await page.screenshot({ path: join(out, 'marks_forces.png') });
+    await page.click('#picked-close');
+    await page.keyboard.press('a');
+    await until('the arrow is gone', async () => (await below()) === 0);
+    assert.equal(await isPressed(page, 'a'), 'false');
+  },
+
+  'bonds of sets are drawn in the colour of their state, and are in the legend': async (session) => {
+    const { page } = session;
+    await session.source.end();
+    session.source = session.scene('--scene', 'grid', '--mats', '441', '--bonds');
+    await until('the grid is drawn', async () => (await viz(page, 'lastFrame')).matCount === 441);
+    const states = palettes.dark.link_states;
+    const linesOf = async () => (await legendOf(page)).filter(([mark]) => mark.startsWith('link'));
+    await until('not all are in the frames', async () => / \(the first 16.384 of all\), paste: stuck$/.test((await linesOf())[1][1]));
+    await until('all are', async () => !(await linesOf())[1][1].includes('('));
+    assert.deepEqual(await linesOf(), [
+      ['link solid', 'link', states[0]],
+      ['link solid', 'bond of sets, paste: stuck', states[1]],
+      ['link solid', 'paste: torn', states[2]],
+    ]);
+    await page.keyboard.press('3'); // from above no link crosses a cell
+    const [stuck, torn] = [[44, 66], [264, 286]]; // across a cell each
+    await until('one is seen', async () => (await colouredBetween(page, ...stuck, states[1])) > 4);
+    await page.screenshot({ path: join(out, 'marks_bonds.png') });
+    assert.equal(await colouredBetween(page, ...torn, states[1]), 0, 'there is no bond');
+    assert.equal(await colouredBetween(page, ...torn, states[2]), 0, 'one that does nothing is not drawn');
+    await page.selectOption('#colouring', 'stretch');
+    await drawn(page, 2);
+    assert.equal(await colouredBetween(page, ...stuck, states[1]), 0, 'frames say nothing of its stretch');
+    await page.selectOption('#colouring', 'bodies');
   },
 
   'a flat grid in one dimension is seen from above its edge': async (session) => {

@@ -21,7 +21,7 @@ async function modules() {
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, canBeSlowed, timeScaleOf } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, canBeSlowed, timeScaleOf } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -167,6 +167,19 @@ const cases = {
         assert.deepEqual({ name, states }, machines[number]);
       });
     }
+  },
+
+  'bonds of each liaison of sets have a pattern, and no state of the start': () => {
+    const machine = (name, ...states) => ({ name, states });
+    const machines = [machine('glue', 'apart', 'stuck'), machine('touch', 'apart', 'near'), machine('hook', 'held', 'free', 'gone'), machine('glue', 'apart', 'stuck')];
+    const sets = [1, 0, 2, 3, 2].map((number, k) => ({ name: `set ${k}`, state_machine: number, start_state: k === 4 ? 1 : 0 }));
+    const groups = new BondGroups({ state_machines: machines, sets });
+    assert.deepEqual(groups.list.map(({ name, pattern, shown }) => [name, pattern, shown]), [
+      ['touch', 0, [1]],
+      ['glue', 1, [1]],
+      ['hook', 2, [1, 2, 0]],
+    ]);
+    assert.deepEqual([0, 1, 2, 3, 4, 5].map((set) => groups.patternOf(set)), [0, 1, 2, 1, 2, 2]);
   },
 
   'a key is as wide as its pitch, across its way': () => {

@@ -76,6 +76,14 @@ TEST(PageText, DescribesSurfacesByTheirKinds) {
     {"name": "post", "mat": 1, "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
 }
 
+TEST(PageText, DescribesSetsWhosePairsHaveStates) {
+  msg::SceneDescription description = row_of_three();
+  EXPECT_EQ(Json::parse(description_text(description, 1))["sets"], Json::array());
+  description.sets({bonding_set(2, 1)});
+  EXPECT_EQ(Json::parse(description_text(description, 1))["sets"],
+            Json::parse(R"([{"name": "glue", "state_machine": 2, "start_state": 1}])"));
+}
+
 TEST(PageText, FindsTheMatsOfSurfacesOfAnOlderTakeByTheirNames) {
   msg::SceneDescription description = row_of_three();
   msg::NamedRange hills;

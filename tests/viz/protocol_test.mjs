@@ -62,7 +62,7 @@ class Client {
   take(data, isBinary) {
     if (!isBinary) return void this.texts.push(JSON.parse(data.toString()));
     assert.equal(data.toString('latin1', 0, 4), MAGIC);
-    assert.equal(data[4], 3);
+    assert.equal(data[4], 4);
     const header = data.readUInt16LE(6);
     if (data[5] === FRAME) this.takeFrame(data, header);
     else if (data[5] === SIGNALS) this.takeSignals(data, header);
@@ -83,8 +83,9 @@ class Client {
       linkStates: data.readUInt32LE(60),
       dropped: data.readUInt32LE(64),
     };
-    assert.equal(header, 72);
-    assert.equal(data.length, header + 12 * frame.mats + frame.linkStates);
+    assert.equal(header, 88);
+    const [bonds, , sets, ports] = [68, 72, 76, 80].map((offset) => data.readUInt32LE(offset));
+    assert.equal(data.length, header + 12 * frame.mats + 9 * bonds + 4 * sets + 12 * ports + frame.linkStates);
     frame.xyz = (i) => [0, 4, 8].map((offset) => data.readFloatLE(header + 12 * i + offset));
     this.frames.push(frame);
     if (this.acknowledging) this.acknowledge(frame.sequence);

@@ -71,6 +71,7 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"surface", [](auto& d) { d.surfaces()[5].kind(static_cast<msg::SurfaceKind>(9)); }},
       {"MATs of surfaces", [](auto& d) { d.surface_mat().pop_back(); }},
       {"does not exist", [](auto& d) { d.surface_mat()[5] = 3; }},
+      {"state machine", [](auto& d) { d.sets({bonding_set(0, 0)}); }},
   };
   for (const auto& [word, spoil] : faults) {
     msg::SceneDescription description = row_of_three();
@@ -95,6 +96,37 @@ TEST(SceneCheck, FindsFramesThatDoNotFitTheirDescription) {
     msg::SceneFrame frame = frame_of_three(1);
     spoil(frame);
     EXPECT_NE(fault_of(frame, row_of_three()).find(word), std::string::npos) << word;
+  }
+}
+
+TEST(SceneCheck, FindsBondsAndForcesThatDoNotFitTheirDescription) {
+  ASSERT_EQ(fault_of(bonding_row()), "");
+  msg::SceneFrame good = frame_of_three(1);
+  EXPECT_EQ(fault_of(good, bonding_row()), "") << "as in an older take";
+  good.bond_ends({0, 1, 1, 2});
+  good.bond_state({1, 130});
+  good.bond_count({0, 2});
+  good.port_force_n({0.0F, 1.0F, 0.0F});
+  ASSERT_EQ(fault_of(good, bonding_row()), "");
+
+  const std::vector<std::pair<const char*, std::function<void(msg::SceneFrame&)>>> faults = {
+      {"ends of bonds", [](auto& f) { f.bond_ends().pop_back(); }},
+      {"ends of bonds", [](auto& f) { f.bond_state().pop_back(); }},
+      {"does not exist", [](auto& f) { f.bond_ends()[2] = 3; }},
+      {"sets in a frame", [](auto& f) { f.bond_count().pop_back(); }},
+      {"bonds of sets", [](auto& f) { f.bond_count().clear(); }},
+      {"bonds of sets", [](auto& f) { f.bond_count()[0] = 1; }},
+      {"bonds of sets",
+       [](auto& f) {
+         f.bond_count({0xffffffff, 3});
+       }},  // would wrap round
+      {"forces on ports", [](auto& f) { f.port_force_n().pop_back(); }},
+      {"finite", [](auto& f) { f.port_force_n()[1] = std::nanf(""); }},
+  };
+  for (const auto& [word, spoil] : faults) {
+    msg::SceneFrame frame = good;
+    spoil(frame);
+    EXPECT_NE(fault_of(frame, bonding_row()).find(word), std::string::npos) << word;
   }
 }
 

@@ -3,7 +3,7 @@
 //
 // usage: scene_source --domain N [--session NAME] [--scene string|grid] [--mats N] [--states]
 //                     [--amplitude METRES] [--bodies N] [--liaisons] [--space 1|2|3] [--surfaces] [--driven] [--bad-frames]
-//                     [--colours] [--keyboard] [--tool-radius METRES]
+//                     [--colours] [--keyboard] [--tool-radius METRES] [--bonds]
 //        scene_source --hold-domain     prints a domain of its own and holds it until it is ended
 #include <algorithm>
 #include <atomic>
@@ -39,6 +39,9 @@ constexpr std::uint8_t kFixed = 1;
 constexpr std::uint8_t kPort = 2;
 constexpr std::ptrdiff_t kPlainLinks = 4;  // without states, where there are several liaisons
 constexpr std::size_t kIdleLink = 32;      // it does nothing, all the time
+constexpr std::uint32_t kFirstBond = 2;    // row and column of a grid where it begins
+constexpr std::uint32_t kSecondBond = 12;  // likewise; it does nothing
+constexpr float kPortForceN = -0.25F;      // along y
 
 struct Options {
   int domain = -1;
@@ -55,6 +58,7 @@ struct Options {
   bool colours = false;   // of the scene's own, for three bodies
   bool keyboard = false;  // the device is one of four keys
   float tool_radius_m = 0.0F;
+  bool bonds = false;  // in a grid: two, of which one does nothing
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -95,6 +99,8 @@ Options read_options(int argc, char** argv) {
       options.tool_radius_m = std::stof(value());
     } else if (word == "--keyboard") {
       options.keyboard = true;
+    } else if (word == "--bonds") {
+      options.bonds = true;
     } else if (word == "--bad-frames") {
       options.bad_frames = true;
     } else if (word == "--hold-domain") {
@@ -207,6 +213,18 @@ void describe_other_liaisons(msg::SceneDescription& description) {
   std::fill(machines.begin() + static_cast<std::ptrdiff_t>(machines.size() * 2 / 3), machines.end(),
             1);
   std::fill(machines.end() - kPlainLinks, machines.end(), msg::NO_INDEX);
+}
+
+/// Balls may stick to each other.
+void describe_bonds(msg::SceneDescription& description) {
+  msg::StateMachineDescription paste;
+  paste.name("paste");
+  paste.states({"apart", "stuck", "torn"});
+  msg::SetDescription set;
+  set.name("lump");
+  set.state_machine(static_cast<std::uint32_t>(description.state_machines().size()));
+  description.state_machines().push_back(paste);
+  description.sets({set});
 }
 
 void name_parts(MovingScene& scene, const std::string& name, std::size_t bodies,
@@ -332,6 +350,16 @@ class Publisher {
         frame_.link_state()[l] = second;
       if (frame_.link_state().size() > kIdleLink) frame_.link_state()[kIdleLink] = 128 + 1;
     }
+    if (!scene_.description.sets().empty()) {  // across the cells of a grid
+      const std::uint32_t second = kSecondBond * row_of_grid() + kSecondBond;
+      frame_.bond_ends({kFirstBond * row_of_grid() + kFirstBond,
+                        (kFirstBond + 1) * row_of_grid() + kFirstBond + 1, second,
+                        second + row_of_grid() + 1});
+      frame_.bond_state({1, 2 + 128});
+      frame_.bond_count({2});
+      frame_.bonds_left_out(step / 1000 % 4 < 2 ? 0 : 7);
+    }
+    frame_.port_force_n({0.0F, kPortForceN, 0.0F});
     frame_.time_nsec(node::monotonic_nsec());
     static_cast<void>(frame_writer_.write(frame_));
   }
@@ -359,6 +387,11 @@ class Publisher {
   }
 
  private:
+  std::uint32_t row_of_grid() const {
+    return static_cast<std::uint32_t>(
+        std::sqrt(static_cast<double>(scene_.description.mat_kind().size())));
+  }
+
   dds::Writer<msg::SceneFrame> frame_writer_;
   dds::Writer<msg::SceneSignals> signal_writer_;
   MovingScene& scene_;
@@ -379,6 +412,7 @@ int publish(const Options& options) {
   if (options.states) describe_states(scene.description);
   if (options.states && options.liaisons) describe_other_liaisons(scene.description);
   if (options.surfaces) scene.description.surfaces(test::steps_and_post());
+  if (options.bonds) describe_bonds(scene.description);
   name_parts(scene, options.scene, options.bodies, epoch);
   if (options.driven) add_driven_box(scene);
   if (options.colours) give_colours(scene.description);

@@ -32,6 +32,26 @@ inline msg::SceneDescription row_of_three() {
   return description;
 }
 
+inline msg::SetDescription bonding_set(std::uint32_t state_machine, std::uint32_t start_state) {
+  msg::SetDescription set;
+  set.name("glue");
+  set.state_machine(state_machine);
+  set.start_state(start_state);
+  return set;
+}
+
+/// A row of three with a port at the last MAT, in which pairs of two sets may be stuck.
+inline msg::SceneDescription bonding_row() {
+  msg::SceneDescription description = row_of_three();
+  description.state_machines().resize(1);
+  description.state_machines()[0].name("glue");
+  description.state_machines()[0].states({"apart", "stuck", "torn"});
+  description.sets({bonding_set(0, 0), bonding_set(0, 0)});
+  description.ports().resize(1);
+  description.ports()[0].mat(2);
+  return description;
+}
+
 inline msg::SceneFrame frame_of_three(std::uint64_t number) {
   msg::SceneFrame frame;
   frame.epoch(kEpoch);

@@ -43,6 +43,13 @@ double distance(const Point& a, const Point& b) noexcept {
   return std::sqrt(x * x + y * y + z * z);
 }
 
+/// One liaison with other parameters for some of its links is several state machines of one name.
+GroupKey key_of(const msg::SceneDescription& description, std::uint32_t machine) {
+  if (machine >= description.state_machines().size()) return GroupKey();
+  const msg::StateMachineDescription& described = description.state_machines()[machine];
+  return GroupKey(described.name(), described.states());
+}
+
 /// True if a range is the virtual tool of a port: the MAT that has its name and is not its own.
 bool is_tool(const msg::SceneDescription& description, const msg::NamedRange& range) {
   return range.count() == 1 &&
@@ -69,6 +76,7 @@ ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme
   if (!description.colours().empty()) find_coloured_parts(description);
   find_coloured_surfaces();
   find_patterns(description);
+  find_bonds(description);
 }
 
 void ScenePainter::find_looks(const msg::SceneDescription& description) {
@@ -163,17 +171,11 @@ void ScenePainter::find_coloured_surfaces() {
 void ScenePainter::find_patterns(const msg::SceneDescription& description) {
   const std::vector<std::uint32_t>& machines = description.link_state_machine();
   if (machines.empty() && !link_ends_.empty()) link_groups_.push_back({});
-  // One liaison with other parameters for some of its links is several state machines of one name.
-  const auto key_of = [&description](std::uint32_t machine) {
-    if (machine >= description.state_machines().size()) return GroupKey();
-    const msg::StateMachineDescription& described = description.state_machines()[machine];
-    return GroupKey(described.name(), described.states());
-  };
   std::map<GroupKey, std::size_t> counts;
   std::map<std::uint32_t, GroupKey> keys;
   for (const std::uint32_t machine : machines) {
     const auto [found, is_new] = keys.try_emplace(machine);
-    if (is_new) found->second = key_of(machine);
+    if (is_new) found->second = key_of(description, machine);
     ++counts[found->second];
   }
   std::vector<GroupKey> order;  // by the first state machines
@@ -190,6 +192,26 @@ void ScenePainter::find_patterns(const msg::SceneDescription& description) {
   }
   if (order.size() < 2) return;
   for (const std::uint32_t machine : machines) link_pattern_.push_back(patterns[keys[machine]]);
+}
+
+/// The patterns of bonds are their own: a line before balls is no link.
+void ScenePainter::find_bonds(const msg::SceneDescription& description) {
+  std::map<GroupKey, std::size_t> groups;
+  for (const msg::SetDescription& set : description.sets()) {
+    const auto [found, is_new] =
+        groups.try_emplace(key_of(description, set.state_machine()), groups.size());
+    const auto& [name, states] = found->first;
+    if (is_new)
+      bond_groups_.push_back(
+          {name, states, static_cast<LinePattern>(std::min(found->second, kLinePatternCount - 1))});
+    LinkGroup& group = bond_groups_[found->second];
+    bond_pattern_.push_back(group.pattern);
+    for (std::size_t state = 0; state < states.size(); ++state) {
+      if (state != set.start_state() &&
+          std::ranges::find(group.bond_states, state) == group.bond_states.end())
+        group.bond_states.push_back(state);
+    }
+  }
 }
 
 void ScenePainter::start(const msg::SceneFrame& frame) {
@@ -282,10 +304,8 @@ bool ScenePainter::is_shown(std::size_t link, const msg::SceneFrame& frame) cons
   return link >= frame.link_state().size() || frame.link_state()[link] < msg::LINK_IS_IDLE;
 }
 
-Colour ScenePainter::colour_of_link(std::size_t link, const msg::SceneFrame& frame,
-                                    double strength) const {
-  const std::size_t state = link < frame.link_state().size() ? frame.link_state()[link] : 0;
-  const Colour& colour = palette_.link_states[state % palette_.link_states.size()];
+Colour ScenePainter::colour_of_state(std::size_t shown, double strength) const {
+  const Colour& colour = palette_.link_states[shown % palette_.link_states.size()];
   return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
 }
 
@@ -349,7 +369,25 @@ void ScenePainter::draw_link(Canvas& canvas, const ViewOptions& options, std::si
   const LinePattern pattern = link_pattern_.empty() ? LinePattern::kSolid : link_pattern_[link];
   draw_line(canvas, options.area,
             {between(begin), between(end), 1.4 * options.mark_scale, pattern, options.mark_scale},
-            colour_of_link(link, frame, options.strength));
+            colour_of_state(link < frame.link_state().size() ? frame.link_state()[link] : 0,
+                            options.strength));
+}
+
+/// From middle to middle, before the two balls: these touch, so nothing would be seen between them.
+void ScenePainter::draw_bond(Canvas& canvas, const ViewOptions& options, const Mark& mark,
+                             const msg::SceneFrame& frame) const {
+  const std::size_t a = frame.bond_ends()[2 * std::size_t{mark.index}];
+  const std::size_t b = frame.bond_ends()[2 * std::size_t{mark.index} + 1];
+  const Projected& from = place_[a];
+  const Projected& to = place_[b];
+  if (from.scale <= 0.0 || to.scale <= 0.0) return;
+  draw_line(canvas, options.area,
+            {{from.x, from.y, from.z + size_[a]},
+             {to.x, to.y, to.z + size_[b]},
+             2.0 * options.mark_scale,
+             mark.pattern,
+             options.mark_scale},
+            colour_of_state(frame.bond_state()[mark.index], options.strength));
 }
 
 void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
@@ -394,6 +432,21 @@ void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const V
   }
 }
 
+void ScenePainter::add_bonds(const SurfacePainter& surfaces, const msg::SceneFrame& frame) {
+  std::uint32_t bond = 0;
+  for (std::size_t set = 0; set < frame.bond_count().size(); ++set) {
+    for (const std::uint32_t end = bond + frame.bond_count()[set]; bond < end; ++bond) {
+      if (frame.bond_state()[bond] >= msg::LINK_IS_IDLE) continue;
+      const std::size_t a = frame.bond_ends()[2 * std::size_t{bond}];
+      const std::size_t b = frame.bond_ends()[2 * std::size_t{bond} + 1];
+      const Point middle = 0.5 * (point_of(frame, a) + point_of(frame, b));
+      marks_.push_back({surfaces.layer_of(middle),
+                        std::max(place_[a].z + size_[a], place_[b].z + size_[b]), bond,
+                        MarkKind::kBond, bond_pattern_[set]});
+    }
+  }
+}
+
 void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFrame& frame) {
   marks_.clear();
   for (std::size_t link = 0; 2 * link < link_ends_.size(); ++link) {
@@ -402,12 +455,13 @@ void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFr
     const std::size_t b = link_ends_[2 * link + 1];
     const Point middle = 0.5 * (point_of(frame, a) + point_of(frame, b));
     marks_.push_back({surfaces.layer_of(middle), 0.5 * (place_[a].z + place_[b].z),
-                      static_cast<std::uint32_t>(link), false});
+                      static_cast<std::uint32_t>(link), MarkKind::kLink});
   }
+  add_bonds(surfaces, frame);
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
     if (look_[mat] == Look::kSurface) continue;
     marks_.push_back({surfaces.layer_of(point_of(frame, mat)), place_[mat].z,
-                      static_cast<std::uint32_t>(mat), true});
+                      static_cast<std::uint32_t>(mat), MarkKind::kBall});
   }
   std::ranges::stable_sort(marks_, {}, [](const Mark& mark) {
     return std::pair{mark.layer, mark.z};
@@ -416,10 +470,14 @@ void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFr
 
 void ScenePainter::draw_mark(Canvas& canvas, const ViewOptions& options, const Mark& mark,
                              const msg::SceneFrame& frame) const {
-  if (mark.is_ball)
-    draw_ball(canvas, options, mark.index);
-  else
-    draw_link(canvas, options, mark.index, frame);
+  switch (mark.kind) {
+    case MarkKind::kBall:
+      return draw_ball(canvas, options, mark.index);
+    case MarkKind::kLink:
+      return draw_link(canvas, options, mark.index, frame);
+    case MarkKind::kBond:
+      return draw_bond(canvas, options, mark, frame);
+  }
 }
 
 void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,

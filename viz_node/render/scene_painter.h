@@ -19,11 +19,12 @@ namespace cordis::viz {
 /// What the colours of masses say.
 enum class ColourBy : std::uint8_t { kBody, kSpeed };
 
-/// Links of one liaison with states, whatever their parameters, or those without.
+/// Links of one liaison with states, whatever their parameters, or those without; or bonds of sets.
 struct LinkGroup {
   std::string name;                 ///< name of the liaison; empty for links without states
   std::vector<std::string> states;  ///< names; empty for links without states
   LinePattern pattern = LinePattern::kSolid;
+  std::vector<std::size_t> bond_states{};  ///< states that bonds of sets may be in
 };
 
 /// Where a view is drawn, and how.
@@ -66,6 +67,8 @@ class ScenePainter {
   const std::vector<Body>& bodies() const noexcept { return bodies_; }
   /// What each pattern of links is, the most frequent first; empty where there are no links.
   const std::vector<LinkGroup>& link_groups() const noexcept { return link_groups_; }
+  /// Likewise of the bonds of sets, in the order of the description.
+  const std::vector<LinkGroup>& bond_groups() const noexcept { return bond_groups_; }
   bool has_fixed_points() const noexcept { return has_fixed_points_; }  ///< without a colour
   bool has_fixed_balls() const noexcept { return has_fixed_balls_; }    ///< likewise
   bool has_ports() const noexcept { return has_ports_; }
@@ -79,12 +82,14 @@ class ScenePainter {
  private:
   /// How a MAT is drawn.
   enum class Look : std::uint8_t { kMass, kFixedBall, kPort, kFixedPoint, kTool, kSurface, kRing };
-  /// A ball or a link on its way from back to front.
+  enum class MarkKind : std::uint8_t { kBall, kLink, kBond };
+  /// A ball, a link or a bond on its way from back to front.
   struct Mark {
     std::size_t layer;  // of surfaces that it is between
     double z;
     std::uint32_t index;
-    bool is_ball;
+    MarkKind kind;
+    LinePattern pattern = LinePattern::kSolid;  // of a bond
   };
 
   /// The surfaces where they are in a frame.
@@ -95,19 +100,24 @@ class ScenePainter {
   void find_coloured_parts(const msg::SceneDescription& description);
   void find_coloured_surfaces();
   void find_patterns(const msg::SceneDescription& description);
+  void find_bonds(const msg::SceneDescription& description);
   /// Gives a name in the legend to what looks like `body`.
   void name_fixed(const Body& body);
   void measure_speeds(const msg::SceneFrame& frame);
   Colour colour_of(std::size_t mat, double strength) const;
-  Colour colour_of_link(std::size_t link, const msg::SceneFrame& frame, double strength) const;
+  /// @param shown  as in a frame
+  Colour colour_of_state(std::size_t shown, double strength) const;
   bool is_shown(std::size_t link, const msg::SceneFrame& frame) const;
   void project_all(const ViewOptions& options, const ViewCamera& camera,
                    const msg::SceneFrame& frame);
   void draw_ball(Canvas& canvas, const ViewOptions& options, std::size_t mat) const;
   void draw_link(Canvas& canvas, const ViewOptions& options, std::size_t link,
                  const msg::SceneFrame& frame) const;
+  void draw_bond(Canvas& canvas, const ViewOptions& options, const Mark& mark,
+                 const msg::SceneFrame& frame) const;
   void draw_mark(Canvas& canvas, const ViewOptions& options, const Mark& mark,
                  const msg::SceneFrame& frame) const;
+  void add_bonds(const SurfacePainter& surfaces, const msg::SceneFrame& frame);
   void sort_marks(const SurfacePainter& surfaces, const msg::SceneFrame& frame);
   void draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
                  const Box& home) const;
@@ -121,7 +131,9 @@ class ScenePainter {
   std::vector<Body> bodies_;
   std::vector<std::uint32_t> link_ends_;
   std::vector<LinePattern> link_pattern_;  // per link; empty where all are solid
+  std::vector<LinePattern> bond_pattern_;  // per set of the description
   std::vector<LinkGroup> link_groups_;
+  std::vector<LinkGroup> bond_groups_;
   std::vector<msg::SurfaceDescription> surfaces_;
   std::vector<std::uint32_t> surface_mat_;       // per surface
   std::vector<SurfaceColours> surface_colours_;  // per surface

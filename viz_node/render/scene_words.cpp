@@ -42,28 +42,44 @@ Sign sign_of(MatterMark mark) noexcept {
   return Sign::kBall;
 }
 
-/// A colour for each state, a pattern for each liaison where there are several. States that look
-/// alike share an entry.
-void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
-  const std::vector<LinkGroup>& groups = painter.link_groups();
-  const std::vector<Colour>& colours = painter.palette().link_states;
-  std::map<std::pair<LinePattern, std::size_t>, std::vector<std::string>> texts;  // by look
-  for (const LinkGroup& group : groups) {
-    const std::string liaison = groups.size() > 1 ? group.name + ": " : "";
-    for (std::size_t state = 0; state < group.states.size(); ++state)
-      texts[{group.pattern, state % colours.size()}].push_back(liaison + group.states[state]);
-    if (group.states.empty())
-      texts[{group.pattern, 0}].emplace_back(groups.size() > 1 ? "without states" : "");
-  }
+/// Names by look: a pattern, and the number of a colour.
+using NamesByLook = std::map<std::pair<LinePattern, std::size_t>, std::vector<std::string>>;
+
+/// One entry for each look. @param what  before the first
+void add_looks(const NamesByLook& looks, const std::string& what,
+               const std::vector<Colour>& colours, std::vector<Entry>& entries) {
   bool is_first = true;
-  for (const auto& [look, names] : texts) {
-    std::string name = std::exchange(is_first, false) ? "link" : "";
+  for (const auto& [look, names] : looks) {
+    std::string name = std::exchange(is_first, false) ? what : "";
     for (std::size_t i = 0; i < std::min(names.size(), kMaxStates); ++i) {
       if (!names[i].empty()) name += (i > 0 ? " or " : name.empty() ? "" : ", ") + names[i];
     }
     if (names.size() > kMaxStates) name += " …";
     entries.push_back({Sign::kLink, name, colours[look.second], look.first});
   }
+}
+
+/// A colour for each state, a pattern for each liaison where there are several. States that look
+/// alike share an entry.
+void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
+  const std::vector<Colour>& colours = painter.palette().link_states;
+  const std::vector<LinkGroup>& groups = painter.link_groups();
+  NamesByLook links;
+  for (const LinkGroup& group : groups) {
+    const std::string liaison = groups.size() > 1 ? group.name + ": " : "";
+    for (std::size_t state = 0; state < group.states.size(); ++state)
+      links[{group.pattern, state % colours.size()}].push_back(liaison + group.states[state]);
+    if (group.states.empty())
+      links[{group.pattern, 0}].emplace_back(groups.size() > 1 ? "without states" : "");
+  }
+  add_looks(links, "link", colours, entries);
+  NamesByLook bonds;
+  for (const LinkGroup& group : painter.bond_groups()) {
+    for (const std::size_t state : group.bond_states)
+      bonds[{group.pattern, state % colours.size()}].push_back(group.name + ": " +
+                                                               group.states[state]);
+  }
+  add_looks(bonds, "bond of sets", colours, entries);
 }
 
 std::vector<Entry> entries_of(const ScenePainter& painter) {

@@ -22,7 +22,7 @@ class SendQueue {
  public:
   struct Message {
     bool is_text = false;
-    std::array<asio::const_buffer, 3> parts;  ///< stay until next() is called again
+    std::array<asio::const_buffer, 7> parts;  ///< stay until next() is called again
   };
 
   /// @param page         number of the page
@@ -136,10 +136,16 @@ class SendQueue {
                       .simulated_s = frame.simulated_s(),
                       .mat_count = static_cast<std::uint32_t>(frame.position_m().size() / 3),
                       .link_state_count = static_cast<std::uint32_t>(frame.link_state().size()),
-                      .dropped = credit_.dropped()});
-    return Message{false,
-                   {asio::buffer(header_), asio::buffer(frame.position_m()),
-                    asio::buffer(frame.link_state())}};
+                      .dropped = credit_.dropped(),
+                      .bond_count = static_cast<std::uint32_t>(frame.bond_state().size()),
+                      .bonds_left_out = frame.bonds_left_out(),
+                      .set_count = static_cast<std::uint32_t>(frame.bond_count().size()),
+                      .port_count = static_cast<std::uint32_t>(frame.port_force_n().size() / 3)});
+    return Message{
+        false,
+        {asio::buffer(header_), asio::buffer(frame.position_m()), asio::buffer(frame.bond_ends()),
+         asio::buffer(frame.bond_count()), asio::buffer(frame.port_force_n()),
+         asio::buffer(frame.link_state()), asio::buffer(frame.bond_state())}};
   }
 
   ServerState& state_;

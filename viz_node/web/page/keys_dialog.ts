@@ -17,6 +17,7 @@ const KEYS: [string, string][] = [
   ['m', 'motion drawn larger than it is, up to 100 times'],
   ['r', 'count motion and stretch from now on'],
   ['t', 'trails of MATs'],
+  ['a', 'arrows of the forces on ports'],
   ['n', 'names of matter and ports'],
   ['g', 'grid'],
   ['+ -', 'plots over a shorter or a longer time, as does the wheel over them'],

@@ -8,6 +8,7 @@ import { PATTERNS } from './link_groups.ts';
 import type { Description, Surface } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
+import { MAX_BONDS } from './wire.ts';
 
 const MOST_BODIES = 8;
 const MOST_SURFACES = 3; // names in the legend
@@ -69,14 +70,25 @@ function surfaceText(surfaces: Surface[]): string {
 }
 
 /** A colour for each state, a pattern for each liaison where there are several. States that look the same share an entry. */
-function linkEntries({ groups }: SceneView, colours: string[]): LegendEntry[] {
+function linkEntries({ groups: { list }, bonds }: SceneView, colours: string[]): LegendEntry[] {
+  const links = list.flatMap(({ name, states, pattern }) => {
+    const liaison = list.length > 1 ? `${name}: ` : '';
+    const textOf = (state: string) => (state !== '' ? liaison + state : list.length > 1 ? 'without states' : '');
+    return (states.length === 0 ? [''] : states).map((state, number) => ({ pattern, number, text: textOf(state) }));
+  });
+  const ofBonds = bonds.groups.list.flatMap(({ name, states, shown, pattern }) => shown.map((number) => ({ pattern, number, text: `${name}: ${states[number]}` })));
+  const cut = bonds.isCut ? ` (the first ${count(MAX_BONDS)} of all)` : '';
+  const entries = [...entriesOf(links, 'link', colours), ...entriesOf(ofBonds, `bond of sets${cut}`, colours)];
+  if (entries.length > MOST_LINKS) entries[MOST_LINKS - 1]!.text += ' …';
+  return entries.slice(0, MOST_LINKS);
+}
+
+/** One entry for each colour and pattern. @param what  before the first */
+function entriesOf(states: { pattern: number; number: number; text: string }[], what: string, colours: string[]): LegendEntry[] {
   const texts = new Map<number, string[]>();
-  for (const { name, states, pattern } of groups.list) {
-    const liaison = groups.list.length > 1 ? `${name}: ` : '';
-    (states.length === 0 ? [''] : states).forEach((state, number) => {
-      const look = PATTERNS.length * (number % colours.length) + pattern;
-      texts.set(look, [...(texts.get(look) ?? []), state !== '' ? liaison + state : groups.list.length > 1 ? 'without states' : '']);
-    });
+  for (const { pattern, number, text } of states) {
+    const look = PATTERNS.length * (number % colours.length) + pattern;
+    texts.set(look, [...(texts.get(look) ?? []), text]);
   }
   const looks = [...texts.keys()].sort((a, b) => (a % PATTERNS.length) - (b % PATTERNS.length) || a - b);
   const entries = looks.map((look): LegendEntry => {
@@ -84,9 +96,8 @@ function linkEntries({ groups }: SceneView, colours: string[]): LegendEntry[] {
     const text = names.slice(0, MOST_STATES).join(' or ') + (names.length > MOST_STATES ? ' …' : '');
     return { mark: `link ${PATTERNS[look % PATTERNS.length]!}`, text, colour: colours[Math.floor(look / PATTERNS.length)]! };
   });
-  if (entries.length > 0) entries[0]!.text = entries[0]!.text === '' ? 'link' : `link, ${entries[0]!.text}`;
-  if (entries.length > MOST_LINKS) entries[MOST_LINKS - 1]!.text += ' …';
-  return entries.slice(0, MOST_LINKS);
+  if (entries.length > 0) entries[0]!.text = entries[0]!.text === '' ? what : `${what}, ${entries[0]!.text}`;
+  return entries;
 }
 
 export function showLegend(entries: LegendEntry[]): void {

@@ -147,6 +147,11 @@ const LINK_VERTEX = /* glsl */ `
   precision highp float;
   in vec3 position;
   in vec3 previous;
+#ifdef BEFORE_BALLS
+  in float radius;
+  uniform float radius_share;
+  uniform bool orthographic;
+#endif
   uniform mat4 modelViewMatrix;
   uniform mat4 projectionMatrix;
   uniform float speed_scale;
@@ -159,7 +164,13 @@ const LINK_VERTEX = /* glsl */ `
   ${DRAWN}
 
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(drawn(position), 1.0);
+    vec4 view_position = modelViewMatrix * vec4(drawn(position), 1.0);
+  #ifdef BEFORE_BALLS
+    // Towards the viewer: it ends on the nearest point of each ball.
+    vec3 towards = orthographic ? vec3(0.0, 0.0, 1.0) : -normalize(view_position.xyz);
+    view_position.xyz += 1.02 * radius_share * radius * towards;
+  #endif
+    gl_Position = projectionMatrix * view_position;
     end = (0.5 + 0.5 * gl_Position.xy / gl_Position.w) * vec2(view_width, view_height);
     colour = speed_scale > 0.0 ? 0.8 * speed_colour(length(position - previous) * speed_scale) : link_colour;
   }
@@ -217,6 +228,8 @@ export function matProgram(spheres: boolean): Program {
 }
 
 export const LINK_PROGRAM: Program = { vertex: LINK_VERTEX, fragment: LINK_FRAGMENT };
+/** Lines before the balls that they join. */
+export const BOND_PROGRAM: Program = { vertex: `#define BEFORE_BALLS\n${LINK_VERTEX}`, fragment: LINK_FRAGMENT };
 
 /** What a part of the links is drawn with. */
 export const linkUniforms = (colour: string, pattern: number): Uniforms => ({ link_colour: sharesOf(colour), pattern });

@@ -12,7 +12,7 @@ import { drawKeys } from './key_marks.ts';
 import { KeyboardPanel } from './keyboards.ts';
 import { keysAreListed, toggleKeys } from './keys_dialog.ts';
 import { legendOf, showLegend, type LegendEntry } from './legend.ts';
-import { LinkGroups } from './link_groups.ts';
+import { BondGroups, LinkGroups } from './link_groups.ts';
 import { Marks } from './marks.ts';
 import { MotionBox } from './motion_box.ts';
 import { drawNames } from './names.ts';
@@ -20,6 +20,7 @@ import { ParameterPanel } from './parameters.ts';
 import { Picked } from './picked.ts';
 import { download } from './plot_export.ts';
 import { PointerHand } from './pointer.ts';
+import { PortArrows } from './port_arrows.ts';
 import { toolsOf, type Description, type Frame, type Message, type Topology } from './protocol.ts';
 import { chooseQuality, findRenderer } from './quality.ts';
 import { setText } from './rows.ts';
@@ -89,9 +90,11 @@ export class Page {
   private pose: Pose | null = null; // of the camera, for the next view
   private drawAsked = false;
   private readonly colouring = new ColouringBox(() => this.colour());
-  private legendVersion = 0; // of the components that the legend names
+  private legendVersion = ''; // of what the legend says of a frame
   private readonly motion = new MotionBox(() => this.exaggerate());
   private names = false;
+  private arrows = false; // of the forces on ports
+  private readonly portArrows = new PortArrows();
   private maySet = false; // the launch file lets pages set parameters
   private trails = false;
   private plotsMs = 0;
@@ -213,12 +216,13 @@ export class Page {
     this.say(note);
     const { space, surfaces } = this.description;
     const tools = this.description.tools.filter((tool) => tool !== null);
+    const portMats = this.description.ports.map(({ mat }) => mat);
     const changed = () => this.askToDraw();
     const lost = (isLost: boolean) => this.say(isLost ? CONTEXT_LOST : note);
     try {
       const bodies = new Bodies(this.description, topology);
       const groups = new LinkGroups(this.description, topology);
-      this.view = new SceneView(this.stage, topology, bodies, groups, tools, space, surfaces, this.palette, quality, this.pose, changed, lost);
+      this.view = new SceneView(this.stage, topology, bodies, groups, new BondGroups(this.description), tools, portMats, space, surfaces, this.palette, quality, this.pose, changed, lost);
       this.colouring.describe(topology.linkCount, this.view.hasFreeMasses);
       this.colour();
       this.exaggerate();
@@ -301,9 +305,9 @@ export class Page {
     setText(ruler.lastElementChild!, joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, ''));
     this.colouring.show(this.scale);
     this.motion.say(this.motion.textSince(this.view.countedSinceS));
-    const { componentsVersion } = this.view.links ?? { componentsVersion: 0 };
-    if (componentsVersion !== this.legendVersion) this.showLegend();
-    this.legendVersion = componentsVersion;
+    const version = `${this.view.links?.componentsVersion ?? 0} ${this.view.bonds.isCut}`;
+    if (version !== this.legendVersion) this.showLegend();
+    this.legendVersion = version;
   }
 
   private refresh(): void {
@@ -334,6 +338,7 @@ export class Page {
       m: () => this.motion.step(),
       r: () => this.view?.measureFromNow(),
       t: () => this.showTrails(!this.trails),
+      a: () => this.toggle('a', (this.arrows = !this.arrows)),
       n: () => this.toggle('n', (this.names = !this.names)),
       h: () => this.freeze(!this.frozen),
       p: () => this.plots.togglePhase(),
@@ -446,7 +451,14 @@ export class Page {
     if (this.lastFrame !== null) drawKeys(this.keyboards.list, this.view, this.marks, this.palette.port);
     if (this.names) drawNames(this.marks, this.view, this.palette.text);
     this.picked.draw(this.marks, this.palette);
+    if (this.arrows) this.portArrows.draw(this.marks, this.view, this.arrowMats, this.palette.port);
     this.pointer.draw(this.marks, { mine: this.palette.text, others: this.palette.quiet });
+  }
+
+  /** MATs of the ports without an arrow of their own: those that are held have one. */
+  private get arrowMats(): number[] {
+    const held = new Set(this.pointer.figures.held.map(({ port }) => port));
+    return this.description!.ports.filter((_, port) => !held.has(port)).map(({ mat }) => mat);
   }
 
   private freeze(wanted: boolean): void {

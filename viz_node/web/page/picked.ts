@@ -3,6 +3,7 @@ import type { Palette } from './colours.ts';
 import { percentOf } from './colouring.ts';
 import { count, joined, withUnit } from './format.ts';
 import type { Marks, Point } from './marks.ts';
+import { drawForce } from './port_arrows.ts';
 import { press, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
 import type { Traced, Traces } from './traces.ts';
@@ -102,15 +103,10 @@ export class Picked {
 
   /** An arrow whose full length is the largest force of late. */
   private drawForce(view: SceneView, mat: number, marks: Marks, palette: Palette): void {
-    const force = view.forceOn(mat);
+    const force = view.forceOn(mat) ?? view.portForceOn(mat);
     if (force === null) return;
-    const size = Math.hypot(...force);
-    this.largestN = Math.max(size, FALL * this.largestN);
-    if (size === 0) return;
-    const place = view.drawnPlace(mat);
-    const from = view.screenOf(place);
-    const tip = view.screenOf(place.map((x, k) => x + (force[k]! / size) * view.rig.metresPerPixel * 100));
-    marks.arrow(from, { x: tip.x - from.x, y: tip.y - from.y }, size / this.largestN, palette.text, joined(withUnit(size, 'N')));
+    this.largestN = Math.max(Math.hypot(...force), FALL * this.largestN);
+    drawForce(marks, view, mat, force, this.largestN, palette.text);
   }
 
   /** What a plot of it shows. */
@@ -161,8 +157,10 @@ function matText(view: SceneView, mat: number): [string, string] {
   const force = view.forceOn(mat);
   const span = joined(withUnit(view.forceSpanS, 's'));
   const net = force === null ? '' : ` · net force ${joined(withUnit(Math.hypot(...force), 'N'))}, mean over ${span}`;
+  const onPort = view.portForceOn(mat);
+  const felt = onPort === null ? '' : ` · force on the port ${joined(withUnit(Math.hypot(...onPort), 'N'))}`;
   const component = part === null ? '' : ` · component ${part.place} by size, ${count(part.component.size)} MATs`;
-  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${net}${component}`];
+  return [view.bodies.nameOf(mat), `x ${x} · y ${y} · z ${z} · speed ${joined(withUnit(view.speedOf(mat), 'm/s'))}${net}${felt}${component}`];
 }
 
 function linkText(view: SceneView, link: number): [string, string] {

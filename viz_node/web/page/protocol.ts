@@ -2,7 +2,7 @@
 // each field is.
 
 export const MAGIC = 0x31534443; // the bytes "CDS1"
-export const VERSION = 3;
+export const VERSION = 4;
 export const NO_STATE_MACHINE = 65535; // of a link
 
 const TYPE_FRAME = 1;
@@ -23,6 +23,11 @@ export interface Frame {
   dropped: number;
   positions: Float32Array<ArrayBuffer>; // x, y, z of each MAT [m]
   linkStates: Uint8Array<ArrayBuffer>; // per link, + LINK_IS_IDLE of wire.ts, or empty
+  bondEnds: Uint32Array<ArrayBuffer>; // two per bond, set after set
+  bondCounts: Uint32Array<ArrayBuffer>; // bonds of each set of the description, or empty
+  bondStates: Uint8Array<ArrayBuffer>; // per bond, + LINK_IS_IDLE
+  bondsLeftOut: number; // that there are beside these
+  portForces: Float32Array<ArrayBuffer>; // x, y, z of what the liaisons do to each port [N], or empty
 }
 
 export interface Signals {
@@ -77,6 +82,13 @@ export interface Port {
   direction: number[]; // 3 per axis: unit vector along which the axis moves it
 }
 
+/** A liaison of sets whose pairs have states; a pair in another state than that of the start is a bond. */
+export interface PairSet {
+  name: string;
+  state_machine: number;
+  start_state: number;
+}
+
 /** A device, as it says it is. */
 export interface DeviceShape {
   name: string;
@@ -129,6 +141,7 @@ export interface Description {
   matter: NamedRange[];
   links: NamedRange[];
   state_machines: { name: string; states: string[] }[];
+  sets: PairSet[];
   ports: Port[];
   tools: (number | null)[]; // of each port: the MAT that its coupling moves. Filled in by the page
   signals: { name: string; unit: string; sound: boolean; full_scale: Figure }[];
@@ -272,7 +285,12 @@ function checkLength(view: DataView, expected: number): void {
 function decodeFrame(view: DataView<ArrayBuffer>, header: number): Frame {
   const matCount = view.getUint32(56, true);
   const linkStates = view.getUint32(60, true);
-  checkLength(view, header + 12 * matCount + linkStates);
+  const [bonds, sets, ports] = [68, 76, 80].map((offset) => view.getUint32(offset, true)) as [number, number, number];
+  const bondEnds = header + 12 * matCount;
+  const bondCounts = bondEnds + 8 * bonds;
+  const portForces = bondCounts + 4 * sets;
+  const states = portForces + 12 * ports;
+  checkLength(view, states + linkStates + bonds);
   return {
     type: 'frame',
     sequence: view.getUint32(8, true),
@@ -285,7 +303,12 @@ function decodeFrame(view: DataView<ArrayBuffer>, header: number): Frame {
     matCount,
     dropped: view.getUint32(64, true),
     positions: new Float32Array(view.buffer, header, 3 * matCount),
-    linkStates: new Uint8Array(view.buffer, header + 12 * matCount, linkStates),
+    linkStates: new Uint8Array(view.buffer, states, linkStates),
+    bondEnds: new Uint32Array(view.buffer, bondEnds, 2 * bonds),
+    bondCounts: new Uint32Array(view.buffer, bondCounts, sets),
+    bondStates: new Uint8Array(view.buffer, states + linkStates, bonds),
+    bondsLeftOut: view.getUint32(72, true),
+    portForces: new Float32Array(view.buffer, portForces, 3 * ports),
   };
 }
 

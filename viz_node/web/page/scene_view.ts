@@ -2,12 +2,13 @@
 // straight into a GPU buffer that matter and links share.
 import { Box3, Vector3 } from 'three';
 import type { Bodies } from './bodies.ts';
+import { BondView } from './bond_view.ts';
 import { ofList, ramp, sharesOf, type Palette } from './colours.ts';
 import type { Colouring } from './colouring.ts';
 import { SMALLER, type Component } from './components.ts';
 import { GlCanvas, shapeOf, VertexArray, type Shape } from './gl_canvas.ts';
 import { Ground } from './ground.ts';
-import type { LinkGroups } from './link_groups.ts';
+import type { BondGroups, LinkGroups } from './link_groups.ts';
 import { LinkView } from './link_view.ts';
 import { matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
 import { NetForces } from './net_forces.ts';
@@ -45,11 +46,13 @@ export class SceneView {
   private readonly tints: VertexArray<Uint8Array>;
   private readonly matter: Shape;
   readonly links: LinkView | null;
+  readonly bonds: BondView;
   private newest: VertexArray;
   private readonly reference: VertexArray; // places from which motion and stretch are counted
   private readonly trails: Trails;
   private readonly forces: NetForces;
   private before: VertexArray;
+  private portForces = new Float32Array(0); // of the newest frame
   private newestS = Number.NaN;
   private shownForS = Number.NaN; // simulated time between the last two frames
   private fastest = 0; // [m/s], falls slowly
@@ -72,7 +75,9 @@ export class SceneView {
     private readonly topology: Topology,
     readonly bodies: Bodies,
     readonly groups: LinkGroups,
+    bondGroups: BondGroups,
     private readonly tools: number[],
+    private readonly portMats: number[], // of each port
     private readonly space: number,
     surfaces: Surface[],
     private palette: Palette,
@@ -98,6 +103,7 @@ export class SceneView {
     this.matter = this.matterShape();
     const vertices = { position: this.newest, previous: this.before, reference: this.reference };
     this.links = topology.linkCount > 0 ? new LinkView(topology, groups, vertices, this.uniforms, palette, quality.links) : null;
+    this.bonds = new BondView(bondGroups, { ...vertices, radius: this.radii }, this.uniforms, palette, quality.links);
     const isMobile = (mat: number | null) => mat !== null && topology.kinds[mat] !== MAT_FIXED;
     const driven = [...surfaces.keys()].filter((i) => isMobile(surfaces[i]!.mat));
     this.surfaceView = new SurfaceView([...surfaces], driven, bodies.ofSurfaces, space);
@@ -105,7 +111,7 @@ export class SceneView {
     this.trails = new Trails([...topology.kinds.keys()].filter((mat) => isMobile(mat) && !shapes.has(mat)), palette);
     this.forces = new NetForces(topology.masses);
     this.forceSizes = new Float32Array(topology.matCount);
-    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.trails.shape);
+    this.canvas.shapes.push(...this.surfaceView.shapes, this.matter, ...(this.links === null ? [] : [this.links.shape]), this.bonds.shape, this.trails.shape);
     if (space < 3 || !this.surfaceView.hasPlanes) this.canvas.shapes.push(this.ground.shape); // a plane is a grid itself
     for (const one of container.querySelectorAll('#sound, #legend, #control, #keyboards, #tools')) this.edgeWatch.observe(one);
     this.resize(container.clientWidth, container.clientHeight);
@@ -135,9 +141,11 @@ export class SceneView {
       this.matter.isVisible = true;
     }
     this.links?.take(frame.positions, frame.linkStates);
+    this.bonds.take(frame);
+    this.portForces = frame.portForces;
     this.tintComponents();
     this.tintForces();
-    for (const shape of [this.matter, this.links?.shape]) if (shape !== undefined) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
+    for (const shape of [this.matter, this.links?.shape, this.bonds.shape]) if (shape !== undefined) Object.assign(shape.vertices, { position: this.newest, previous: this.before });
     this.shownForS = frame.simulatedS - this.newestS;
     this.measureSpeed(this.shownForS);
     this.newestS = frame.simulatedS;
@@ -197,6 +205,7 @@ export class SceneView {
     this.palette = palette;
     this.canvas.clearTo(sharesOf(palette.background));
     this.links?.paint(palette);
+    this.bonds.paint(palette);
     this.trails.paint(palette);
     this.colourBy(this.colouring);
     if (this.framed) this.layGround();
@@ -266,6 +275,13 @@ export class SceneView {
   /** Net force on a MAT along x, y and z, the mean over `forceSpanS` [N]; null where there is none to say. */
   forceOn(mat: number): number[] | null {
     return this.forces.of(mat);
+  }
+
+  /** What the liaisons do to the port at a MAT along x, y and z in the newest frame [N]; null where there is no port. */
+  portForceOn(mat: number): number[] | null {
+    const port = this.portMats.indexOf(mat);
+    const force = [...this.portForces.subarray(3 * port, 3 * port + 3)];
+    return port >= 0 && force.length === 3 ? force : null;
   }
 
   get forceSpanS(): number {
@@ -340,6 +356,7 @@ export class SceneView {
     this.uniforms.radius_share = colouring === 'stretch' ? SMALL : 1;
     this.measureSpeed(this.shownForS);
     this.links?.colourBy(colouring, this.newest.array);
+    this.bonds.colourBy(colouring);
     if (colouring === 'components') this.tintComponents();
     else this.tints.set(this.bodies.tints(this.palette, colouring === 'stretch' || colouring === 'force' ? () => this.palette.quiet : undefined));
     this.tintForces();

@@ -28,7 +28,7 @@ export interface Viz {
   signal(name: string): number | null;
   /** Coordinates of MAT `index` in the frame drawn last [m]. */
   position(index: number): number[] | null;
-  /** Net force on MAT `index` along x, y and z, the mean over the last frames [N]; null where there is none to say. */
+  /** Net force on MAT `index` along x, y and z, the mean over the last frames; else that of the liaisons on a port [N]; null where there is none to say. */
   force(index: number): number[] | null;
   /** Where MAT `index` is on the page [CSS pixels]. */
   project(index: number): { x: number; y: number } | null;
@@ -118,7 +118,7 @@ export function exposeViz(page: Page): void {
       return value === undefined || Number.isNaN(value) ? null : value;
     },
     position: (index) => (page.lastFrame ? [...page.lastFrame.positions.slice(3 * index, 3 * index + 3)] : null),
-    force: (index) => page.view?.forceOn(index) ?? null,
+    force: (index) => page.view?.forceOn(index) ?? page.view?.portForceOn(index) ?? null,
     project: (index) => page.view?.onPage(page.view.project(index)) ?? null,
     screenOf: (place) => page.view?.onPage(page.view.screenOf(place)) ?? null,
     soundSpectrum: () => page.sound.spectrum(),

@@ -4,6 +4,7 @@
 export const MAX_AXES = 16;
 
 export const LINK_IS_IDLE = 128;
+export const MAX_BONDS = 16384;
 
 export const MAT_MASS = 0;
 export const MAT_FIXED = 1;
