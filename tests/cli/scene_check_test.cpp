@@ -237,8 +237,11 @@ links:
 }
 
 TEST_F(Checked, WhatCollisionsGainAddsUpWhereItIsMuch) {
-  const auto bounces = [&](int rate) {
-    std::ofstream(path_) << "cordis: 1\nname: bounce\nspace: 1\nstep: {rate_hz: " << rate << R"(}
+  const auto bounces = [&](const std::string& rate) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: bounce
+space: 1
+step: {rate_hz: <rate>}
 world: {gravity_m_per_s2: -9.81}
 matter:
   floor: {kind: fixed, at_m: 0}
@@ -247,13 +250,14 @@ liaisons:
   contact: {kind: state_machine, stiffness_n_per_m: 700, pulls: false}
 links:
   - {liaison: contact, between: [floor, ball], rest_m: 0.01}
-)";
+)",
+                                         {{"rate", rate}});
     EXPECT_EQ(run({}), kSuccess) << error_;
     EXPECT_NE(out_.find("one collision gains"), std::string::npos) << out_;
     return out_.find("what collisions gain adds up") != std::string::npos;
   };
-  EXPECT_TRUE(bounces(1000));   // K' = 0.7
-  EXPECT_FALSE(bounces(3000));  // 0.078
+  EXPECT_TRUE(bounces("1000"));   // K' = 0.7
+  EXPECT_FALSE(bounces("3000"));  // 0.078
 }
 
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
