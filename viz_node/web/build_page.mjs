@@ -1,7 +1,7 @@
 // viz_node/web/build_page.mjs -- bundles the page into the folder given: node build_page.mjs
 // OUT_FOLDER
 import { build } from 'esbuild';
-import { mkdir, readFile, writeFile } from 'node:fs/promises';
+import { copyFile, mkdir, readFile, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
@@ -22,18 +22,6 @@ const threeInModules = {
   },
 };
 
-/** Shaders without their comments and indents. */
-const bareShaders = {
-  name: 'bare-shaders',
-  setup({ onLoad }) {
-    const bare = (text) => text.replace(/\/\/.*$/gm, '').replace(/^\s+/gm, '');
-    onLoad({ filter: /page\/\w+\.ts$/ }, async ({ path }) => {
-      const contents = (await readFile(path, 'utf8')).replace(/\/\* glsl \*\/ `[^`]*`/g, bare);
-      return { contents, loader: 'ts' };
-    });
-  },
-};
-
 await mkdir(out, { recursive: true });
 await build({
   entryPoints: [
@@ -46,11 +34,11 @@ await build({
   minify: true,
   format: 'esm',
   target: 'es2022',
-  plugins: [threeInModules, bareShaders],
+  plugins: [threeInModules],
   legalComments: 'inline',
   logLevel: 'warning',
 });
-await writeFile(join(out, 'index.html'), (await readFile(join(sources, 'index.html'), 'utf8')).replace(/^\s+/gm, ''));
+await copyFile(join(sources, 'index.html'), join(out, 'index.html'));
 
 // viz_node sends these to browsers that take them: a third of the bytes.
 for (const name of ['index.html', 'page.js', 'page.css', 'sound.js']) {
