@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups', 'slow_motion'];
+  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, canBeSlowed, timeScaleOf } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -48,6 +48,39 @@ const cases = {
       assert.equal(forces.sizesOfAll(sizes), true);
       const wanted = Math.hypot(...forces.of(1));
       assert.ok(Number.isNaN(sizes[0]) && Math.abs(sizes[1] - wanted) <= 1e-5 * wanted, `${sizes}, wanted ${wanted} N`);
+    }
+  },
+
+  'signals of every step fill the whole window, and each of its columns has their smallest and largest value': () => {
+    const random = lot(7);
+    for (const rate of [1000, 44_100]) {
+      const signalCount = 1 + Math.floor(4 * random());
+      const store = new SignalStore(signalCount, 1000); // what a scene promises; the rows say their own rate
+      const rows = [];
+      while (rows.length < 21.5 * rate) {
+        if (random() < 0.02) {
+          const lost = Math.ceil(200 * random());
+          for (let n = 0; n < lost; ++n) rows.push(new Float32Array(signalCount).fill(Number.NaN));
+        }
+        const rowCount = 1 + Math.floor(2 * 0.04 * rate * random());
+        const values = Float32Array.from({ length: rowCount * signalCount }, () => random() - 0.5);
+        store.append({ signalCount, rowCount, firstS: 3 + rows.length / rate, rowPeriodS: 1 / rate, values });
+        for (let n = 0; n < rowCount; ++n) rows.push(values.subarray(n * signalCount, (n + 1) * signalCount));
+      }
+      for (const windowS of [1, 5, 20]) {
+        const shown = Array.from({ length: signalCount }, (_, s) => s);
+        const [times, ...curves] = store.window(shown, windowS, 300, store.newestS);
+        const column = 2 * (times[1] - times[0]);
+        assert.ok(store.newestS - times[0] > windowS - 2 * column, `${rate} Hz: ${store.newestS - times[0]} of ${windowS} s`);
+        for (let k = 0; k + 2 < times.length; k += 2) {
+          const [begin, end] = [times[k], times[k + 2]].map((t) => Math.round((t - 3) * rate));
+          curves.forEach((curve, s) => {
+            const seen = rows.slice(begin, end).map((row) => row[s]).filter((value) => !Number.isNaN(value));
+            const wanted = seen.length === 0 ? [null, null] : [Math.min(...seen), Math.max(...seen)];
+            assert.deepEqual(curve.slice(k, k + 2).sort((a, b) => a - b), wanted, `${rate} Hz, column ${k / 2} of ${windowS} s`);
+          });
+        }
+      }
     }
   },
 

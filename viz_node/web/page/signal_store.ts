@@ -3,25 +3,40 @@
 import type { Signals } from './protocol.ts';
 
 const MOST_VALUES = 4_000_000; // 16 MB, whatever the scene
+const BLOCK = 64; // rows
 export const LONGEST_WINDOW_S = 20;
 
 /** Rows are numbered from the start of the scene; rows that were lost on the way stand as NaN. */
 export class SignalStore {
-  private readonly values: Float32Array;
-  private readonly capacity: number; // rows
+  private values = new Float32Array();
+  private smallest = new Float32Array(); // of each block of rows, per signal
+  private largest = new Float32Array();
+  private capacity = 0; // rows, whole blocks
   private nextRow = 0;
   private firstRow = 0;
   private originS = 0; // time of row 0
-  private period = 1; // [s]
+  private period: number; // [s]
   gaps = 0; // rows lost so far
 
+  /** @param rateHz of the rows; the first batch says it better: a scene with sound has one for each step */
   constructor(
     readonly signalCount: number,
     rateHz: number,
   ) {
-    const wanted = Math.ceil(LONGEST_WINDOW_S * rateHz * 1.05) + 1;
-    this.capacity = Math.max(2, Math.min(wanted, Math.floor(MOST_VALUES / Math.max(1, signalCount))));
-    this.values = new Float32Array(this.capacity * Math.max(1, signalCount));
+    this.period = 1 / rateHz;
+    this.makeRoom();
+  }
+
+  /** Makes room for the longest window at the present period, or for less where that is too much. */
+  private makeRoom(): void {
+    const signals = Math.max(1, this.signalCount);
+    const wanted = (LONGEST_WINDOW_S * 1.05) / this.period + 1;
+    const blocks = Math.max(1, Math.ceil(Math.min(wanted, MOST_VALUES / signals) / BLOCK));
+    if (blocks * BLOCK === this.capacity) return;
+    this.capacity = blocks * BLOCK;
+    this.values = new Float32Array(this.capacity * signals);
+    this.smallest = new Float32Array(blocks * signals);
+    this.largest = new Float32Array(blocks * signals);
   }
 
   get rowCount(): number {
@@ -57,13 +72,23 @@ export class SignalStore {
   private restart(batch: Signals): void {
     this.originS = batch.firstS;
     this.period = batch.rowPeriodS;
+    this.makeRoom();
     this.nextRow = 0;
     this.firstRow = 0;
   }
 
   private push(source: Float32Array | null, offset: number): void {
-    const base = (this.nextRow % this.capacity) * this.signalCount;
-    for (let s = 0; s < this.signalCount; ++s) this.values[base + s] = source ? source[offset + s]! : Number.NaN;
+    const at = this.nextRow % this.capacity;
+    const base = at * this.signalCount;
+    const block = Math.floor(at / BLOCK) * this.signalCount;
+    const begins = at % BLOCK === 0;
+    for (let s = 0; s < this.signalCount; ++s) {
+      const value = source ? source[offset + s]! : Number.NaN;
+      this.values[base + s] = value;
+      if (begins) [this.smallest[block + s], this.largest[block + s]] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+      if (value < this.smallest[block + s]!) this.smallest[block + s] = value;
+      if (value > this.largest[block + s]!) this.largest[block + s] = value;
+    }
     ++this.nextRow;
     if (this.rowCount > this.capacity) this.firstRow = this.nextRow - this.capacity;
   }
@@ -128,16 +153,20 @@ export class SignalStore {
     return result;
   }
 
-  /** Smallest and largest value of the rows, in the order in which they come. */
+  /** Smallest and largest value of the rows, in the order in which they come, or in which their blocks do. */
   private extremes(signal: number, begin: number, end: number): [number | null, number | null] {
     let smallest = Number.POSITIVE_INFINITY;
     let largest = Number.NEGATIVE_INFINITY;
     let smallestRow = begin;
     let largestRow = begin;
-    for (let row = begin; row < end; ++row) {
-      const value = this.valueAt(row, signal);
-      if (value < smallest) [smallest, smallestRow] = [value, row];
-      if (value > largest) [largest, largestRow] = [value, row];
+    for (let row = begin; row < end; ) {
+      const isBlock = row % BLOCK === 0 && row + BLOCK <= end;
+      const block = (Math.floor(row / BLOCK) % (this.capacity / BLOCK)) * this.signalCount + signal;
+      const low = isBlock ? this.smallest[block]! : this.valueAt(row, signal);
+      const high = isBlock ? this.largest[block]! : low;
+      if (low < smallest) [smallest, smallestRow] = [low, row];
+      if (high > largest) [largest, largestRow] = [high, row];
+      row += isBlock ? BLOCK : 1;
     }
     if (!Number.isFinite(smallest) || !Number.isFinite(largest)) return [null, null];
     return smallestRow <= largestRow ? [smallest, largest] : [largest, smallest];
