@@ -78,10 +78,10 @@ export class SignalStore {
   }
 
   private push(source: Float32Array | null, offset: number): void {
-    const at = this.nextRow % this.capacity;
-    const base = at * this.signalCount;
-    const block = Math.floor(at / BLOCK) * this.signalCount;
-    const begins = at % BLOCK === 0;
+    const slot = this.nextRow % this.capacity;
+    const base = slot * this.signalCount;
+    const block = Math.floor(slot / BLOCK) * this.signalCount;
+    const begins = slot % BLOCK === 0;
     for (let s = 0; s < this.signalCount; ++s) {
       const value = source ? source[offset + s]! : Number.NaN;
       this.values[base + s] = value;
