@@ -61,7 +61,7 @@ const EQUAL = {
   'edge of a surface': [cpp(PAINTER, 'kEdgeShare'), page('surfaces.ts', 'EDGE_SHARE')],
   'cells of the grid': [cpp(PAINTER, 'kGridCells'), page('ground.ts', 'CELLS')],
   'few MATs': [cpp(PAINTER, 'kFewMats'), ['viz_node/web/page/scene_view.ts', 'few = this\\.topology\\.matCount <= (\\d+)']],
-  'fade of the fastest speed': [cpp(PAINTER, 'kFade'), ['viz_node/web/page/scene_view.ts', '([\\d.]+) \\* this\\.fastest\\)']],
+  'fade of the fastest speed': [cpp(PAINTER, 'kFade'), ['viz_node/web/page/scene_view.ts', 'const FALL = ([\\d.]+);']],
   'least contrast': [cpp('render/palette.h', 'kMinContrast'), page('colours.ts', 'LEAST_CONTRAST')],
   'steps to a readable colour': [cpp('render/palette.cpp', 'kSteps'), page('colours.ts', 'STEPS')],
   'matter without a colour of the scene': [cpp('render/scene_colours.h', 'kNone'), page('given_colours.ts', 'NONE')],

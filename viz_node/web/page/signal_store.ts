@@ -3,40 +3,30 @@
 import type { Signals } from './protocol.ts';
 
 const MOST_VALUES = 4_000_000; // 16 MB, whatever the scene
-const BLOCK = 64; // rows
 export const LONGEST_WINDOW_S = 20;
+
+/** True if the rows of a batch end within a part of a period of where they would with that period. */
+const fits = (batch: Signals, period: number): boolean => Math.abs(batch.rowPeriodS - period) * (batch.rowCount - 1) < 0.6 * period;
 
 /** Rows are numbered from the start of the scene; rows that were lost on the way stand as NaN. */
 export class SignalStore {
-  private values = new Float32Array();
-  private smallest = new Float32Array(); // of each block of rows, per signal
-  private largest = new Float32Array();
-  private capacity = 0; // rows, whole blocks
+  private readonly values: Float32Array;
+  private readonly capacity: number; // rows
   private nextRow = 0;
   private firstRow = 0;
   private originS = 0; // time of row 0
+  private lastS = 0; // time of the newest row
   private period: number; // [s]
   gaps = 0; // rows lost so far
 
-  /** @param rateHz of the rows; the first batch says it better: a scene with sound has one for each step */
   constructor(
     readonly signalCount: number,
-    rateHz: number,
+    private readonly rateHz: number,
   ) {
     this.period = 1 / rateHz;
-    this.makeRoom();
-  }
-
-  /** Makes room for the longest window at the present period, or for less where that is too much. */
-  private makeRoom(): void {
-    const signals = Math.max(1, this.signalCount);
-    const wanted = (LONGEST_WINDOW_S * 1.05) / this.period + 1;
-    const blocks = Math.max(1, Math.ceil(Math.min(wanted, MOST_VALUES / signals) / BLOCK));
-    if (blocks * BLOCK === this.capacity) return;
-    this.capacity = blocks * BLOCK;
-    this.values = new Float32Array(this.capacity * signals);
-    this.smallest = new Float32Array(blocks * signals);
-    this.largest = new Float32Array(blocks * signals);
+    const wanted = Math.ceil(LONGEST_WINDOW_S * rateHz * 1.05) + 1;
+    this.capacity = Math.max(2, Math.min(wanted, Math.floor(MOST_VALUES / Math.max(1, signalCount))));
+    this.values = new Float32Array(this.capacity * Math.max(1, signalCount));
   }
 
   get rowCount(): number {
@@ -56,39 +46,30 @@ export class SignalStore {
     return this.rowCount === 0 ? Number.NaN : this.valueAt(this.nextRow - 1, signal);
   }
 
+  /** Rows come at a whole step each: their period is that of the scene but for a part of a step, another one in each batch. */
   append(batch: Signals): void {
-    if (batch.signalCount !== this.signalCount || !(batch.rowPeriodS > 0)) return;
-    const row = Math.round((batch.firstS - this.originS) / batch.rowPeriodS);
-    const missing = row - this.nextRow;
-    if (this.rowCount === 0 || batch.rowPeriodS !== this.period || missing < 0 || missing > this.capacity) {
+    if (batch.signalCount !== this.signalCount || !(batch.rowPeriodS > 0) || batch.rowCount === 0) return;
+    const missing = Math.round((batch.firstS - this.lastS) / this.period) - 1;
+    if (this.rowCount === 0 || !fits(batch, this.period) || missing < 0 || missing > this.capacity) {
       this.restart(batch);
     } else {
       this.gaps += missing;
       for (let i = 0; i < missing; ++i) this.push(null, 0);
     }
     for (let r = 0; r < batch.rowCount; ++r) this.push(batch.values, r * this.signalCount);
+    this.lastS = batch.firstS + (batch.rowCount - 1) * batch.rowPeriodS;
+    this.originS = this.lastS - (this.nextRow - 1) * this.period;
   }
 
   private restart(batch: Signals): void {
-    this.originS = batch.firstS;
-    this.period = batch.rowPeriodS;
-    this.makeRoom();
+    this.period = fits(batch, 1 / this.rateHz) ? 1 / this.rateHz : batch.rowPeriodS;
     this.nextRow = 0;
     this.firstRow = 0;
   }
 
   private push(source: Float32Array | null, offset: number): void {
-    const slot = this.nextRow % this.capacity;
-    const base = slot * this.signalCount;
-    const block = Math.floor(slot / BLOCK) * this.signalCount;
-    const begins = slot % BLOCK === 0;
-    for (let s = 0; s < this.signalCount; ++s) {
-      const value = source ? source[offset + s]! : Number.NaN;
-      this.values[base + s] = value;
-      if (begins) [this.smallest[block + s], this.largest[block + s]] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-      if (value < this.smallest[block + s]!) this.smallest[block + s] = value;
-      if (value > this.largest[block + s]!) this.largest[block + s] = value;
-    }
+    const base = (this.nextRow % this.capacity) * this.signalCount;
+    for (let s = 0; s < this.signalCount; ++s) this.values[base + s] = source ? source[offset + s]! : Number.NaN;
     ++this.nextRow;
     if (this.rowCount > this.capacity) this.firstRow = this.nextRow - this.capacity;
   }
@@ -153,20 +134,16 @@ export class SignalStore {
     return result;
   }
 
-  /** Smallest and largest value of the rows, in the order in which they come, or in which their blocks do. */
+  /** Smallest and largest value of the rows, in the order in which they come. */
   private extremes(signal: number, begin: number, end: number): [number | null, number | null] {
     let smallest = Number.POSITIVE_INFINITY;
     let largest = Number.NEGATIVE_INFINITY;
     let smallestRow = begin;
     let largestRow = begin;
-    for (let row = begin; row < end; ) {
-      const isBlock = row % BLOCK === 0 && row + BLOCK <= end;
-      const block = (Math.floor(row / BLOCK) % (this.capacity / BLOCK)) * this.signalCount + signal;
-      const low = isBlock ? this.smallest[block]! : this.valueAt(row, signal);
-      const high = isBlock ? this.largest[block]! : low;
-      if (low < smallest) [smallest, smallestRow] = [low, row];
-      if (high > largest) [largest, largestRow] = [high, row];
-      row += isBlock ? BLOCK : 1;
+    for (let row = begin; row < end; ++row) {
+      const value = this.valueAt(row, signal);
+      if (value < smallest) [smallest, smallestRow] = [value, row];
+      if (value > largest) [largest, largestRow] = [value, row];
     }
     if (!Number.isFinite(smallest) || !Number.isFinite(largest)) return [null, null];
     return smallestRow <= largestRow ? [smallest, largest] : [largest, smallest];
