@@ -65,7 +65,7 @@ export class PointerHand {
     this.state = null;
   }
 
-  /** The connection is gone: viz_node lets go for the page, until repeat() is heard again. */
+  /** The connection is gone: viz_node lets go for the page, until repeat() takes hold again. */
   forget(): void {
     this.state = null;
     this.seenEvent = 0;
