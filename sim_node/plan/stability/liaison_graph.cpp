@@ -9,6 +9,8 @@
 #include <set>
 #include <tuple>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/partner_bound.h"
@@ -298,15 +300,26 @@ void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
 
 namespace {
 
+bool has_expression(const engine::StateMachine& machine) {
+  return std::ranges::any_of(machine.states, [](const engine::LinkState& state) {
+    return std::holds_alternative<engine::Expression>(state.elasticity) ||
+           std::holds_alternative<engine::Expression>(state.dissipation);
+  });
+}
+
 /// The largest slopes of links with states: found once for all that are alike but for rounding. Where
-/// many differ, as with rest lengths of their own, they share the bisections, and bounds are less near.
+/// many with an expression differ, as by a rest length of their own, they share the bisections, and
+/// bounds are less near.
 class SlopesOfLinks {
  public:
   SlopesOfLinks(const NetworkDescription& network, const Reach& reach)
       : network_(network), reach_(reach), bisections_(reach.bisections) {
-    std::set<std::pair<std::uint32_t, float>> different;
+    std::vector<bool> may_bisect;
+    for (const engine::StateMachine& machine : network.state_machines)
+      may_bisect.push_back(has_expression(machine));
+    std::set<Key> different;
     for (const engine::StateLink& link : network.state_links)
-      different.emplace(link.state_machine, static_cast<float>(link.rest_length));
+      if (may_bisect[link.state_machine]) different.insert(key_of(link, reach_at_ends(link)));
     constexpr std::size_t kThatTakeAll = 64;
     constexpr std::size_t kFewest = 16;
     const auto most = static_cast<std::size_t>(reach.bisections);
@@ -315,10 +328,9 @@ class SlopesOfLinks {
   }
 
   const Slope& slope_of(const engine::StateLink& link) {
-    Reach here = reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+    Reach here = reach_at_ends(link);
     here.bisections = bisections_;
-    const Key key{link.state_machine, static_cast<float>(link.rest_length), here.mass_a.low,
-                  here.mass_b.low, here.held};
+    const Key key = key_of(link, here);
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     const engine::StateMachine& machine = network_.state_machines[link.state_machine];
@@ -328,6 +340,14 @@ class SlopesOfLinks {
 
  private:
   using Key = std::tuple<std::uint32_t, float, double, double, bool>;
+
+  Reach reach_at_ends(const engine::StateLink& link) const {
+    return reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+  }
+  static Key key_of(const engine::StateLink& link, const Reach& here) {
+    return {link.state_machine, static_cast<float>(link.rest_length), here.mass_a.low,
+            here.mass_b.low, here.held};
+  }
 
   const NetworkDescription& network_;
   const Reach& reach_;
