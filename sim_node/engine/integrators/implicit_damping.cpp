@@ -147,12 +147,28 @@ void ImplicitDamping::add_response(double force) noexcept {
   for (std::size_t i = 0; i < response_.size(); ++i) middle_[i] += force * response_[i];
 }
 
+/// The part of the forces on the masses that dampers come to carry within a period: f - M A^2 M^-1 f.
+void ImplicitDamping::find_carried_forces(const MatArray& mats) noexcept {
+  std::fill(response_.begin(), response_.end(), 0.0);
+  for (std::uint32_t i = 0; i < mass_.size(); ++i) {
+    if (mass_[i] > 0.0) column(response_, i) = mass_[i] * mats.pushed_by(i, mats.force(i));
+  }
+  matrix_.solve(response_.data());
+  for (std::size_t i = 0; i < mass_.size(); ++i) column(response_, i) *= mass_[i];
+  matrix_.solve(response_.data());
+  for (std::uint32_t i = 0; i < mass_.size(); ++i) {
+    if (mass_[i] == 0.0) continue;
+    column(response_, i) = mass_[i] * (mats.pushed_by(i, mats.force(i)) - column(response_, i));
+  }
+}
+
 ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& extrapolated,
                                                bool first) noexcept {
   const std::size_t count = mass_.size();
   // The mean velocity of the first period takes half a period of the forces.
   const double part = first ? 0.5 : 1.0;
   if (first) {
+    find_carried_forces(mats);
     for (std::size_t i = 0; i < count; ++i) {
       column(middle_, i) =
           mass_[i] == 0.0
@@ -177,6 +193,7 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
         begin + (part * mats.pushed_by(i, mats.force(i)) - column(drag_, i) / mass_[i]);
     const double energy_at_begin = mass_[i] * dot(begin, begin);
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
+    if (first) work.dissipated += 0.25 * dot(end - begin, column(response_, i));
     work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
     column(extrapolated, i) =
         first ? Vec3(column(second_, i)) : Vec3(2.0 * end - column(middle_, i));

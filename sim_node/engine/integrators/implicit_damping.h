@@ -24,7 +24,13 @@ namespace cordis::engine {
 /// and angular momentum are kept to rounding; the rounding of a velocity grows with Z dt / m.
 /// Stable while dt^2 K < 3.852 M, however large Z is (implicit_damping_limit).
 ///
-/// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity.
+/// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
+/// take from x(0) to the moment 1/2, with the damping force I / dt and A = (M + g dt Z)^-1 M,
+///
+///     (v(0) + v_m) I / 2 + dt (v_m - v(0)) (f - M A^2 M^-1 f) / 4,     I = dt f / 2 - M (v_m - v(0))
+///
+/// The second term counts a creep that begins at once, whose elastic work is f v_m dt / 2. It is exact for heavy
+/// dampers and 0 without any, for decay and for creep that lasts.
 /// All vectors are dt times a velocity, or dt^2 times an acceleration [m], 4 x N.
 /// Source: Alexander, Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s, 1977.
 class ImplicitDamping {
@@ -84,6 +90,7 @@ class ImplicitDamping {
   };
 
   void find_axes(const MatArray& mats) noexcept;
+  void find_carried_forces(const MatArray& mats) noexcept;
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
 
@@ -99,10 +106,10 @@ class ImplicitDamping {
   AlignedVector<double> constant_;        // forces [N]
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
-  AlignedVector<double> first_;   // dt u1
-  AlignedVector<double> second_;  // dt u2
-  AlignedVector<double> middle_;  // dt w
-  AlignedVector<double> response_;
+  AlignedVector<double> first_;     // dt u1
+  AlignedVector<double> second_;    // dt u2
+  AlignedVector<double> middle_;    // dt w
+  AlignedVector<double> response_;  // also the forces that dampers carry in the first period [kg m]
   AlignedVector<double> force_;
   AlignedVector<double> drag_;  // dt Z w [kg m]
 };

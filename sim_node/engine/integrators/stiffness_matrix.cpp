@@ -51,8 +51,8 @@ void StiffnessMatrix::order_masses(const NetworkDescription& network) {
     const std::uint32_t mat = masses[static_cast<std::size_t>(order.indices()[k])];
     place_[mat] = static_cast<std::uint32_t>(k);
     mat_.push_back(mat);
-    const double viscosity = network.medium_viscosity_on(network.mats[mat]);
-    inertia_.push_back(network.mats[mat].mass + network.step * viscosity);
+    medium_.push_back(network.step * network.medium_viscosity_on(network.mats[mat]));
+    inertia_.push_back(network.mats[mat].mass + medium_.back());
   }
 }
 
@@ -191,6 +191,22 @@ void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const doubl
     const Vec3 force = part.across * apart + ((part.along - part.across) * along) * n;
     Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_a}) += force;
     Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_b}) -= force;
+  }
+}
+
+void StiffnessMatrix::add_viscosity_times(const MatArray& mats, const double* displacement,
+                                          double* force) const noexcept {
+  for (const MatrixLink& link : links_) {
+    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{link.mat_b}) -
+                       Vec3::Map(displacement + 4 * std::size_t{link.mat_a});
+    const Vec3 n = tangent(mats, link).direction;
+    const Vec3 resisted = link.isotropic && dimension_ > 1 ? apart : Vec3(dot(n, apart) * n);
+    Eigen::Map<Vec3>(force + 4 * std::size_t{link.mat_a}) -= link.viscosity * resisted;
+    Eigen::Map<Vec3>(force + 4 * std::size_t{link.mat_b}) += link.viscosity * resisted;
+  }
+  for (std::size_t k = 0; k < mat_.size(); ++k) {
+    Eigen::Map<Vec3>(force + 4 * std::size_t{mat_[k]}) +=
+        medium_[k] * Vec3::Map(displacement + 4 * std::size_t{mat_[k]});
   }
 }
 

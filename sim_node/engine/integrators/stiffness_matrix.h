@@ -23,6 +23,9 @@ class StiffnessMatrix {
   /// Takes from `change` dt^2 K (displacement) over the links, as a port that rests would have it.
   void subtract_stiffness_times(const MatArray& mats, const double* displacement,
                                 double* change) const noexcept;
+  /// Adds dt Z (displacement) over the links and the medium to `force` [kg m].
+  void add_viscosity_times(const MatArray& mats, const double* displacement,
+                           double* force) const noexcept;
   /// Solves for 4 x N columns in place; what is no mass becomes 0.
   void solve(double* columns) noexcept;
 
@@ -56,6 +59,7 @@ class StiffnessMatrix {
   std::vector<std::uint32_t> place_;  // of each MAT in the order; kNoPlace unless a mass
   std::vector<std::uint32_t> mat_;    // in the order
   std::vector<double> inertia_;       // m + dt Z of the medium, in the order [kg]
+  std::vector<double> medium_;        // dt Z of the medium, in the order [kg]
   std::vector<MatrixLink> links_;
   std::vector<std::size_t> column_begin_;  // upper part by columns, rows ascending within blocks
   std::vector<std::uint32_t> row_;
