@@ -31,8 +31,8 @@ TopicListener::TopicListener(const SessionAddress& address, const std::string& p
       participant_(member_of(address)),
       follower_(
           participant_,
-          [patterns = patterns_of(pattern)](const std::string& topic) {
-            return mcap::matches_topic(topic, patterns);
+          [patterns = patterns_of(pattern)](const dds::RawTopic& topic) {
+            return mcap::matches_topic(topic.name, patterns);
           },
           [this](const dds::RawTopic& topic, const dds::RawSample& sample) {
             receive(topic, sample);

@@ -12,7 +12,7 @@
 
 #include "cli/session_address.h"
 #include "node/dds/participant.h"
-#include "record_node/topic_follower.h"
+#include "node/topic_follower.h"
 
 namespace cordis::cli {
 
@@ -53,7 +53,7 @@ class TopicListener {
   std::size_t waiting_bytes_ = 0;
   std::uint64_t left_out_ = 0;
   dds::Participant participant_;
-  record::TopicFollower follower_;
+  node::TopicFollower follower_;
 };
 
 }  // namespace cordis::cli

@@ -6,6 +6,10 @@
 
 namespace cordis::msg {
 
+/// Encodings of schemas and messages, by the names that files and live clients have for them.
+inline constexpr const char* kSchemaEncoding = "omgidl";
+inline constexpr const char* kMessageEncoding = "cdr";
+
 /// A message of the contract, and a text in IDL that defines it with all that it is made of.
 struct SchemaText {
   std::string_view type;  ///< `cordis::msg::SceneFrame`

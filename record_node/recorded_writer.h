@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "node/dds/participant.h"
-#include "record_node/log_time.h"
+#include "node/log_time.h"
 
 namespace cordis::record {
 
@@ -32,7 +32,7 @@ struct RecordedWriter {
 
   std::uint16_t channel = 0;     ///< belongs to the thread of the file; 0: not in it yet
   bool is_of_loop_here = false;  ///< likewise: a force loop of this host writes it
-  LogTime log_time;              ///< likewise
+  node::LogTime log_time;        ///< likewise
 };
 
 /// The writers so far; any thread adds one or looks at one. None leaves.

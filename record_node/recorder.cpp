@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "idl/topics.h"
+#include "node/topic_follower.h"
 #include "record_node/mcap/topic_glob.h"
 #include "record_node/plan_report.h"
 #include "record_node/recorded_writer.h"
 #include "record_node/sample_queue.h"
 #include "record_node/take_writer.h"
-#include "record_node/topic_follower.h"
 
 namespace cordis::record {
 namespace {
@@ -41,7 +41,7 @@ struct Recorder::Impl {
         file(config, plan, queue, writers,
              [this](const dds::WriterId& id) { return origin_of(id); }),
         follower(
-            participant, [this](const std::string& topic) { return is_wanted(topic); },
+            participant, [this](const dds::RawTopic& topic) { return is_wanted(topic.name); },
             [this](const dds::RawTopic& topic, const dds::RawSample& sample) {
               take(topic, sample);
             }) {}
@@ -57,7 +57,7 @@ struct Recorder::Impl {
   TakeWriter file;
   std::mutex known_mutex;
   std::map<dds::WriterId, RecordedWriter*> known;
-  TopicFollower follower;
+  node::TopicFollower follower;
 
   bool is_wanted(const std::string& topic) const {
     return mcap::matches_topic(topic, config.topics) &&

@@ -9,7 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "idl/schema_text.h"
-#include "idl/topics.h"
+#include "node/log_time.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/topic_words.h"
 
@@ -32,10 +32,6 @@ std::map<std::string, std::string> known_types(const std::map<std::string, std::
     for (const auto& [name, type] : parse_idl(text, source)) types[name] = text;
   }
   return types;
-}
-
-bool is_of_loop(const dds::RawTopic& topic) {
-  return topic.name == msg::TOPIC_POSITIONS || topic.name == msg::TOPIC_FORCES;
 }
 
 }  // namespace
@@ -136,11 +132,11 @@ bool TakeWriter::write(const QueuedSample& sample) {
 std::uint16_t TakeWriter::channel_of(RecordedWriter& writer) {
   if (writer.channel != 0) return writer.channel;
   const Origin origin = find_origin_(writer.id);
-  writer.is_of_loop_here = origin.is_here && is_of_loop(writer.topic);
+  writer.is_of_loop_here = origin.is_here && node::is_of_loop(writer.topic.name);
   mcap::Channel channel;
   channel.schema_id = schema_of(writer.topic.type);
   channel.topic = writer.topic.name;
-  channel.message_encoding = "cdr";
+  channel.message_encoding = msg::kMessageEncoding;
   channel.metadata = words_of(writer.topic);
   channel.metadata["writer"] = guid_text(writer.id);
   channel.metadata["process"] = origin.process;
@@ -156,7 +152,8 @@ std::uint16_t TakeWriter::schema_of(const std::string& type) {
   if (text == types_.end()) return 0;
   std::uint16_t& schema = schemas_[type];
   if (schema == 0)
-    schema = file_.add_schema({.name = type, .encoding = "omgidl", .data = text->second});
+    schema =
+        file_.add_schema({.name = type, .encoding = msg::kSchemaEncoding, .data = text->second});
   return schema;
 }
 

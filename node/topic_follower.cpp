@@ -1,5 +1,5 @@
-// record_node/topic_follower.cpp
-#include "record_node/topic_follower.h"
+// node/topic_follower.cpp
+#include "node/topic_follower.h"
 
 #include <chrono>
 #include <exception>
@@ -7,17 +7,19 @@
 
 #include <spdlog/spdlog.h>
 
-namespace cordis::record {
+namespace cordis::node {
 namespace {
 
 constexpr auto kLookForWriters = std::chrono::milliseconds(20);
 
 }  // namespace
 
-TopicFollower::TopicFollower(dds::Participant& participant, IsWanted is_wanted, Sink sink)
+TopicFollower::TopicFollower(dds::Participant& participant, IsWanted is_wanted, Sink sink,
+                             Found found)
     : participant_(participant),
       is_wanted_(std::move(is_wanted)),
       sink_(std::move(sink)),
+      found_(std::move(found)),
       thread_([this] { loop(); }) {}
 
 TopicFollower::~TopicFollower() {
@@ -39,14 +41,21 @@ void TopicFollower::loop() {
   std::unique_lock lock(mutex_);
   while (!ending_) {
     lock.unlock();
-    for (const dds::FoundWriter& writer : participant_.writers()) read(writer.topic);
+    update();
     lock.lock();
     woken_.wait_for(lock, kLookForWriters, [this] { return ending_; });
   }
 }
 
+void TopicFollower::update() {
+  const std::vector<dds::FoundWriter> writers = participant_.writers();
+  if (found_) found_(writers);
+  std::erase_if(readers_, [this](const auto& entry) { return !is_wanted_(entry.first); });
+  for (const dds::FoundWriter& writer : writers) read(writer.topic);
+}
+
 void TopicFollower::read(const dds::RawTopic& topic) {
-  if (readers_.contains(topic) || refused_.contains(topic) || !is_wanted_(topic.name)) return;
+  if (readers_.contains(topic) || refused_.contains(topic) || !is_wanted_(topic)) return;
   try {
     auto reader = std::make_unique<dds::RawReader>(
         participant_, topic, [this, topic](const dds::RawSample& sample) { sink_(topic, sample); });
@@ -57,4 +66,4 @@ void TopicFollower::read(const dds::RawTopic& topic) {
   }
 }
 
-}  // namespace cordis::record
+}  // namespace cordis::node

@@ -1,5 +1,5 @@
-// tests/record/log_time_test.cpp -- what a loop has sent later keeps its order in the take.
-#include "record_node/log_time.h"
+// tests/node/log_time_test.cpp -- what a loop has sent later keeps its order in the take.
+#include "node/log_time.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace cordis::record {
+namespace cordis::node {
 namespace {
 
 constexpr std::uint64_t kBegin = 1'800'000'000'000'000'000;  // UTC [ns]
@@ -61,4 +61,4 @@ TEST(LogTime, OfAllElseIsWhenTheMessageCame) {
 }
 
 }  // namespace
-}  // namespace cordis::record
+}  // namespace cordis::node

@@ -1,4 +1,4 @@
-// record_node/topic_follower.h -- reads every topic that turns up, as bytes.
+// node/topic_follower.h -- reads every topic that turns up, as bytes.
 #pragma once
 
 #include <condition_variable>
@@ -9,20 +9,24 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "node/dds/participant.h"
 #include "node/dds/raw_reader.h"
 
-namespace cordis::record {
+namespace cordis::node {
 
-/// Looks, in a thread of its own, for topics that are new, and makes a reader for each.
+/// Looks, in a thread of its own, which topics there are, and has a reader for each that is wanted.
 class TopicFollower {
  public:
-  using IsWanted = std::function<bool(const std::string& topic)>;
+  using IsWanted = std::function<bool(const dds::RawTopic&)>;
   using Sink = std::function<void(const dds::RawTopic&, const dds::RawSample&)>;
+  using Found = std::function<void(const std::vector<dds::FoundWriter>&)>;
 
+  /// @param is_wanted  asked at every look: a topic is read from the first yes to the next no
   /// @param sink  called from threads of DDS, one at a time for a topic; must be quick
-  TopicFollower(dds::Participant& participant, IsWanted is_wanted, Sink sink);
+  /// @param found  if not empty, called at every look with all writers, before `is_wanted`
+  TopicFollower(dds::Participant& participant, IsWanted is_wanted, Sink sink, Found found = {});
   ~TopicFollower();
   TopicFollower(const TopicFollower&) = delete;
   TopicFollower& operator=(const TopicFollower&) = delete;
@@ -32,11 +36,13 @@ class TopicFollower {
 
  private:
   void loop();
+  void update();
   void read(const dds::RawTopic& topic);
 
   dds::Participant& participant_;
   IsWanted is_wanted_;
   Sink sink_;
+  Found found_;
   std::map<dds::RawTopic, std::unique_ptr<dds::RawReader>> readers_;  // of the thread
   std::set<dds::RawTopic> refused_;                                   // likewise
   std::mutex mutex_;
@@ -45,4 +51,4 @@ class TopicFollower {
   std::thread thread_;
 };
 
-}  // namespace cordis::record
+}  // namespace cordis::node

@@ -1,10 +1,18 @@
-// record_node/log_time.h -- when a message of a take was there.
+// node/log_time.h -- when a message was there, as takes and live clients have it.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 
-namespace cordis::record {
+#include "idl/topics.h"
+
+namespace cordis::node {
+
+/// True for the topics of the force loop.
+inline bool is_of_loop(std::string_view topic) noexcept {
+  return topic == msg::TOPIC_POSITIONS || topic == msg::TOPIC_FORCES;
+}
 
 /// The log times of what one writer says, in the order in which it came.
 ///
@@ -32,4 +40,4 @@ class LogTime {
   std::uint64_t last_nsec_ = 0;
 };
 
-}  // namespace cordis::record
+}  // namespace cordis::node
