@@ -2,6 +2,7 @@
 // start it again at will.
 #include <chrono>
 #include <cstdlib>
+#include <optional>
 
 #include <spdlog/spdlog.h>
 
@@ -17,6 +18,8 @@
 #include "viz_node/pointer_desk.h"
 #include "viz_node/scene_listener.h"
 #include "viz_node/scene_mirror.h"
+#include "viz_node/session_topics.h"
+#include "viz_node/topic_board.h"
 #include "viz_node/viz_config.h"
 #include "viz_node/web/server.h"
 #include "viz_node/web/static_pages.h"
@@ -78,15 +81,21 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
     static_cast<void>(targets.write(target));  // the next one replaces it
   });
+  std::optional<viz::TopicBoard> board;
+  if (config.foxglove) board.emplace();
   viz::WebServer server({.node = joined.node,
                          .session = joined.session,
                          .address = config.address,
                          .port = config.port,
                          .folder = viz::page_folder(),
                          .token = page_token(),
-                         .rights = config.rights},
+                         .rights = config.rights,
+                         .epoch = start.epoch,
+                         .topics = board ? &*board : nullptr},
                         mirror, pointers,
                         [&relay](const viz::PageCommand& command) { relay.send(command); });
+  std::optional<viz::SessionTopics> topics;
+  if (board) topics.emplace(joined, *board);
   const viz::SceneListener listener(participant, mirror, relay, pointers);
   const node::StatusPublisher publisher(
       participant, msg::KIND_VIZ_NODE, start.epoch,
@@ -98,6 +107,8 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   commands.start();
   warn_about(config, server);
   spdlog::info("page at {}", server.command_url());
+  if (config.foxglove)
+    spdlog::info("Foxglove reads ws{}", server.url().substr(std::string_view("http").size()));
   while (!node::wait_for_stop(std::chrono::hours(1))) {
   }
   return 0;

@@ -30,6 +30,7 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
     }
   }
   viz.rights.parameters = reader.optional_truth("parameters", false);
+  viz.foxglove = reader.optional_truth("foxglove", viz.foxglove);
   if (!is_address(viz.address)) {
     reader.error_at("address",
                     "address must be an IP address of this machine, got '" + viz.address + "'",

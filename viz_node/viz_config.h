@@ -16,9 +16,10 @@ struct VizConfig {
   int port = 8080;                    ///< 0 takes any free port
   double rate_hz = 25.0;              ///< most frames per second that pages get
   PageRights rights;                  ///< rights of pages
+  bool foxglove = false;              ///< Foxglove may read the topics of the session
 };
 
-/// Reads the keys port, address, rate_hz, scenes and parameters, all optional. What is wrong goes to `problems`.
+/// Reads the section, in which every key is optional. What is wrong goes to `problems`.
 VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems);
 
 }  // namespace cordis::viz

@@ -87,11 +87,20 @@ class Server {
   }
 
   ServerState& state() noexcept { return state_; }
+
+  /// Foxglove may read from now on.
+  TopicBoard& open_to_foxglove() {
+    state_.topics = &topics_;
+    state_.hosts.foxglove = true;
+    state_.server_info = "greeting of Foxglove";
+    return topics_;
+  }
   const std::vector<PageCommand>& commands() const noexcept { return commands_; }
 
  private:
   std::vector<PageCommand> commands_;
   SceneMirror mirror_{25.0};
+  TopicBoard topics_;
   PointerDesk pointers_{1, [](msg::PointerTarget&) {}};
   ServerState state_{mirror_, pointers_,
                      [this](const PageCommand& command) { commands_.push_back(command); }};
@@ -107,11 +116,17 @@ std::string reply_to(Server& server, const std::string& request) {
   return browser.take();
 }
 
-std::string upgrade_of(const std::string& target) {
+/// @param fields  more of them, each with its end of line
+std::string upgrade_of(const std::string& target, const std::string& fields = {}) {
   return "GET " + target +
          " HTTP/1.1\r\nHost: localhost:8080\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n\r\n";
+         "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n" +
+         fields + "\r\n";
 }
+
+const std::string kFoxgloveFields =
+    "Sec-WebSocket-Protocol: foxglove.sdk.v1, foxglove.websocket.v1\r\n"
+    "Origin: https://app.foxglove.dev\r\n";
 
 /// A text of a page, masked with zeros.
 std::string frame_of(const std::string& text) {
@@ -258,11 +273,68 @@ TEST(HttpSession, ServesANewcomerBesideAsManyPagesAsMayBe) {
   EXPECT_TRUE(reply_to(server, upgrade_of("/live")).starts_with("HTTP/1.1 101"));
 }
 
+TEST(HttpSession, ServesFoxgloveWhatItSubscribesToAndNoPage) {
+  Server server;
+  TopicBoard& topics = server.open_to_foxglove();
+  const dds::RawTopic topic{.name = "scene/signals", .type = "cordis::msg::SceneSignals"};
+  topics.set_writers({{.id = {1}, .topic = topic, .partitions = {}}}, {});
+  Browser foxglove = server.connect();
+
+  foxglove.say(upgrade_of("/", kFoxgloveFields));
+  server.run();
+  const std::string greeting = foxglove.take();
+  foxglove.say(frame_of(R"({"op": "subscribe", "subscriptions": [{"id": 3, "channelId": 1}]})"));
+  server.run();
+  const bool is_wanted = topics.is_wanted(topic);
+  const std::array<std::uint8_t, 5> bytes{0, 1, 0, 0, 'x'};
+  topics.add(topic, {.data = bytes.data(), .size = bytes.size(), .reception_nsec = 1});
+  for (FoxgloveSession* client : server.state().foxglove_clients) client->pump();
+  server.run();
+  const std::string message = foxglove.take();
+  foxglove.end();
+  server.run();
+
+  EXPECT_TRUE(greeting.starts_with("HTTP/1.1 101")) << greeting;
+  EXPECT_NE(greeting.find("Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n"), std::string::npos);
+  EXPECT_NE(greeting.find("greeting of Foxglove"), std::string::npos);
+  EXPECT_EQ(greeting.find("may command"), std::string::npos);
+  EXPECT_NE(greeting.find(R"("topic":"scene/signals")"), std::string::npos);
+  EXPECT_TRUE(is_wanted);
+  EXPECT_EQ(message, std::string("\x82\x12\x01\x03\0\0\0\x01\0\0\0\0\0\0\0\0\x01\0\0x", 20));
+  EXPECT_FALSE(topics.is_wanted(topic)) << "nothing is read for a client that left";
+  EXPECT_EQ(server.state().connections, 0u);
+}
+
+TEST(HttpSession, RefusesFoxgloveInASentenceThatNamesTheKey) {
+  Server server;
+  const std::string reply = reply_to(server, upgrade_of("/", kFoxgloveFields));
+
+  EXPECT_TRUE(reply.starts_with("HTTP/1.1 403")) << reply;
+  EXPECT_NE(reply.find("foxglove: true"), std::string::npos);
+}
+
+TEST(HttpSession, ServesAPageBesideFoxgloveAndEndsATextThatIsTooLong) {
+  Server server;
+  server.open_to_foxglove();
+  Browser foxglove = server.connect();
+  foxglove.say(upgrade_of("/", kFoxgloveFields));
+  server.run();
+  foxglove.take();
+  std::string text = std::string("\x81\xff\0\0\0\0\0\0\x40\x01", 10) + std::string(4, '\0');
+  foxglove.say(text + std::string(kLongestFromFoxglove + 1, ' '));
+  server.run();
+
+  EXPECT_NE(foxglove.take().find("\x88"), std::string::npos) << "a close frame";
+  EXPECT_TRUE(may_command(server, "/live"));
+}
+
 /// A request, or the beginning of a page, with some bytes changed, doubled or left out.
 std::string malformed_request(std::mt19937& random) {
   const auto below = [&random](std::size_t limit) { return random() % limit; };
-  const std::array<std::string, 5> sound{
-      std::string(kGet) + "\r\n", upgrade_of("/live") + frame_of(R"({"type": "ack"})"),
+  const std::array<std::string, 6> sound{
+      upgrade_of("/", kFoxgloveFields) + frame_of(R"({"op": "subscribe", "subscriptions": []})"),
+      std::string(kGet) + "\r\n",
+      upgrade_of("/live") + frame_of(R"({"type": "ack"})"),
       std::string(kGet) + "Content-Length: 5\r\n\r\nhello",
       std::string(kGet) + "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
       std::string(kGet) + "X: " + std::string(9000, 'x') + "\r\n\r\n"};
@@ -289,6 +361,7 @@ std::string malformed_request(std::mt19937& random) {
 
 TEST(HttpSession, AnswersAfterTenThousandMalformedRequests) {
   Server server;
+  server.open_to_foxglove();
   std::mt19937 random(20);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same each time
   std::vector<Browser> open;
   for (int i = 0; i < 10'000; ++i) {

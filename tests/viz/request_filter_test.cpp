@@ -139,6 +139,68 @@ TEST(RequestFilter, RefusesForeignOriginsAlsoWhenItIsOpenToOtherMachines) {
   EXPECT_EQ(status_of(request, kOpenToAll), 403u);
 }
 
+const AcceptedHosts kFoxgloveToo{.loopback_only = true, .names = {}, .foxglove = true};
+
+Request foxglove() {
+  return {.method = "GET",
+          .target = "/",
+          .host = "localhost:8080",
+          .origin = "https://app.foxglove.dev",
+          .upgrade = true,
+          .protocols = "foxglove.sdk.v1, foxglove.websocket.v1"};
+}
+
+TEST(RequestFilter, FindsTheSubprotocolOfFoxglove) {
+  EXPECT_EQ(foxglove_protocol_of("foxglove.websocket.v1"), "foxglove.websocket.v1");
+  EXPECT_EQ(foxglove_protocol_of("foxglove.sdk.v1, foxglove.websocket.v1"), "foxglove.sdk.v1");
+  EXPECT_EQ(foxglove_protocol_of("mqtt ,\t foxglove.websocket.v1 "), "foxglove.websocket.v1");
+  for (const std::string_view none : {"", ",", " , ", "foxglove.websocket.v2", "foxglove.sdk.v1x",
+                                      "xfoxglove.sdk.v1", "foxglove", "Foxglove.Sdk.V1"})
+    EXPECT_EQ(foxglove_protocol_of(none), "") << none;
+}
+
+TEST(RequestFilter, LetsFoxgloveInWhereTheLaunchFileSaysSo) {
+  for (const std::string_view origin :
+       {"https://app.foxglove.dev", "file://", "", "http://localhost:8080"}) {
+    Request request = foxglove();
+    request.origin = origin;
+    EXPECT_EQ(status_of(request, kFoxgloveToo), 0u) << origin;
+    const auto refusal = refusal_of(request, kLoopbackOnly);
+    ASSERT_TRUE(refusal.has_value()) << origin;
+    EXPECT_EQ(refusal->status, 403u);
+    EXPECT_EQ(refusal->text,
+              "Foxglove reads this session if the viz_node of its launch file says 'foxglove: "
+              "true'\n");
+  }
+}
+
+TEST(RequestFilter, TakesNoOtherOriginForFoxglove) {
+  for (const std::string_view origin :
+       {"null", "http://app.foxglove.dev", "https://app.foxglove.dev.elsewhere.example",
+        "https://elsewhere.example", "https://foxglove.dev", "file:///", "file:"}) {
+    Request request = foxglove();
+    request.origin = origin;
+    EXPECT_EQ(status_of(request, kFoxgloveToo), 403u) << origin;
+  }
+  Request request = foxglove();
+  request.host = "elsewhere.example";
+  EXPECT_EQ(status_of(request, kFoxgloveToo), 403u);
+}
+
+TEST(RequestFilter, LetsFoxgloveReachNothingButItsWebSocket) {
+  Request request = foxglove();
+  request.target = "/live";
+  EXPECT_EQ(status_of(request, kFoxgloveToo), 404u) << "as Foxglove";
+  request.protocols = "";
+  EXPECT_EQ(status_of(request, kFoxgloveToo), 403u) << "as a page";
+  request = foxglove();
+  request.upgrade = false;
+  EXPECT_EQ(status_of(request, kFoxgloveToo), 403u) << "no file of the page";
+  request = live();
+  request.target = "/";
+  EXPECT_EQ(status_of(request, kFoxgloveToo), 404u) << "a page has its own path";
+}
+
 TEST(RequestFilter, KeepsTheWebSocketAtItsPath) {
   Request request = live();
   request.target = "/other";

@@ -25,20 +25,27 @@ TEST(VizConfig, ServesThisMachineAloneUnlessSetOtherwise) {
   EXPECT_EQ(viz.port, 8080);
   EXPECT_EQ(viz.rate_hz, 25.0);
   EXPECT_FALSE(viz.rights.parameters);
+  EXPECT_FALSE(viz.foxglove);
   EXPECT_TRUE(viz.rights.scenes.empty());
 }
 
 TEST(VizConfig, ReadsItsKeys) {
   config::Problems problems;
-  const VizConfig viz =
-      read("{address: '::1', port: 0, rate_hz: 50, scenes: [a.yaml, b.yaml], parameters: true}",
-           problems);
+  const VizConfig viz = read(R"(address: '::1'
+port: 0
+rate_hz: 50
+scenes: [a.yaml, b.yaml]
+parameters: true
+foxglove: true
+)",
+                             problems);
 
   EXPECT_FALSE(problems.has_errors());
   EXPECT_EQ(viz.address, "::1");
   EXPECT_EQ(viz.port, 0);
   EXPECT_EQ(viz.rate_hz, 50.0);
   EXPECT_TRUE(viz.rights.parameters);
+  EXPECT_TRUE(viz.foxglove);
   EXPECT_EQ(viz.rights.scenes, (std::vector<std::string>{"a.yaml", "b.yaml"}));
 }
 

@@ -11,6 +11,7 @@
 
 #include <boost/asio/buffer.hpp>
 
+#include "viz_node/web/foxglove_session.h"
 #include "viz_node/web/request_filter.h"
 #include "viz_node/web/static_pages.h"
 #include "viz_node/web/websocket_session.h"
@@ -25,7 +26,8 @@ inline constexpr const char* kContentPolicy =
     "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
     "frame-ancestors 'none'";
 
-/// One HTTP connection, until it ends or becomes a WebSocketSession.
+/// One HTTP connection, until it ends or becomes a WebSocketSession or a
+/// FoxgloveSession.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(tcp::socket&& socket, ServerState& state, const StaticPages& pages)
@@ -84,11 +86,13 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const bool upgrade = websocket::is_upgrade(request);
     const std::string_view target(request.target().data(), request.target().size());
     const std::string_view method(request.method_string().data(), request.method_string().size());
+    const std::string_view protocols = field(http::field::sec_websocket_protocol);
     const auto refusal = refusal_of({.method = method,
                                      .target = target,
                                      .host = field(http::field::host),
                                      .origin = field(http::field::origin),
-                                     .upgrade = upgrade},
+                                     .upgrade = upgrade,
+                                     .protocols = protocols},
                                     state_.hosts);
     if (refusal) return reply(refusal->status, kPlainText, refusal->text);
     if (!parser_->is_done()) {
@@ -98,9 +102,16 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     if (upgrade) {
       if (state_.pages() >= kMaxPages) return reply(503, kPlainText, "too many pages are open\n");
       state_.requests.erase(place_);
+      const http::request<http::empty_body> first(request.base());
+      const std::string_view protocol = foxglove_protocol_of(protocols);
+      if (!protocol.empty()) {
+        std::make_shared<FoxgloveSession>(std::move(stream_), std::move(slot_), state_)
+            ->start(first, std::string(protocol));
+        return;
+      }
       std::make_shared<WebSocketSession>(std::move(stream_), std::move(slot_), state_,
                                          state_.may_command(target), every_of(target))
-          ->start(http::request<http::empty_body>(request.base()));
+          ->start(first);
       return;
     }
     const StaticPage* page = pages_.find(path_of(target), field(http::field::accept_encoding));

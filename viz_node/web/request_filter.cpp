@@ -52,6 +52,12 @@ bool is_same_site(std::string_view origin, std::string_view host) {
   return false;
 }
 
+/// True for an app of Foxglove, in a browser or on the desktop. Any site can make its origin "null",
+/// which browsers also say of local files: it is none.
+bool is_foxglove(std::string_view origin) {
+  return origin == "https://app.foxglove.dev" || origin == "file://";
+}
+
 bool is_plain(std::string_view path) {
   return path.find("..") == std::string_view::npos && std::ranges::all_of(path, [](char c) {
            return c > ' ' && c < '\x7f' && c != '%' && c != '\\';
@@ -86,8 +92,20 @@ std::uint32_t every_of(std::string_view target) noexcept {
   return error == std::errc{} && end == text.data() + text.size() ? every : 0;
 }
 
+std::string_view foxglove_protocol_of(std::string_view protocols) noexcept {
+  while (!protocols.empty()) {
+    std::string_view item = protocols.substr(0, protocols.find(','));
+    protocols.remove_prefix(std::min(item.size() + 1, protocols.size()));
+    item.remove_prefix(std::min(item.find_first_not_of(" \t"), item.size()));
+    item = item.substr(0, item.find_last_not_of(" \t") + 1);
+    if (item == "foxglove.websocket.v1" || item == "foxglove.sdk.v1") return item;
+  }
+  return {};
+}
+
 std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& hosts) {
   const std::string_view path = path_of(request.target);
+  const bool foxglove = request.upgrade && !foxglove_protocol_of(request.protocols).empty();
   if (request.method != "GET" && request.method != "HEAD")
     return Refusal{405, "only GET and HEAD are answered here\n"};
   if (!path.starts_with('/')) return Refusal{400, "the target of a request is a path\n"};
@@ -97,11 +115,18 @@ std::optional<Refusal> refusal_of(const Request& request, const AcceptedHosts& h
                             ? "this server is asked for as localhost or 127.0.0.1\n"
                             : "this server is asked for by its IP address or host name\n"};
   }
-  if (!request.origin.empty() && !is_same_site(request.origin, request.host))
+  if (foxglove && !hosts.foxglove) {
+    return Refusal{403,
+                   "Foxglove reads this session if the viz_node of its launch file says 'foxglove: "
+                   "true'\n"};
+  }
+  if (!request.origin.empty() && !is_same_site(request.origin, request.host) &&
+      !(foxglove && is_foxglove(request.origin)))
     return Refusal{403, "pages of other sites may not read this session\n"};
   if (every_of(request.target) == 0)
     return Refusal{400, "every=N sends each N-th frame: N is a whole number from 1 up\n"};
-  if (request.upgrade && path != kLivePath) return Refusal{404, "no WebSocket is here\n"};
+  if (request.upgrade && path != (foxglove ? kFoxglovePath : kLivePath))
+    return Refusal{404, "no WebSocket is here\n"};
   if (!request.upgrade && path == kLivePath) return Refusal{426, "this is a WebSocket\n"};
   return std::nullopt;
 }

@@ -18,6 +18,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/time.h"
+#include "viz_node/foxglove_messages.h"
 #include "viz_node/page_text.h"
 #include "viz_node/web/http_session.h"
 #include "viz_node/web/own_names.h"
@@ -95,6 +96,9 @@ struct WebServer::Impl {
     state.hello = hello_text(config.session, config.node, config.rights, true);
     state.hello_view_only = hello_text(config.session, config.node, config.rights, false);
     if (!endpoint.address().is_loopback()) open_to_others(config.token);
+    state.topics = config.topics;
+    state.hosts.foxglove = config.topics != nullptr;
+    state.server_info = server_info_text(config.session, config.epoch);
   }
 
   void open_to_others(const std::string& token) {
@@ -124,6 +128,12 @@ struct WebServer::Impl {
     for (WebSocketSession* client : now) client->pump();
   }
 
+  void pump_foxglove() {
+    const std::vector<FoxgloveSession*> now(state.foxglove_clients.begin(),
+                                            state.foxglove_clients.end());
+    for (FoxgloveSession* client : now) client->pump();
+  }
+
   /// Also pumps clients whose frames were not acknowledged in time.
   void report_status() {
     tick.expires_after(kStatusPeriod);
@@ -134,6 +144,7 @@ struct WebServer::Impl {
     ++state.status_number;
     state.closures.report(node::monotonic_nsec());
     pump_all();
+    pump_foxglove();
   }
 
   /// Any thread: something new is in the mirror. At most one call waits at a time.
@@ -142,6 +153,16 @@ struct WebServer::Impl {
     asio::post(context, [this] {
       awake = false;
       pump_all();
+    });
+  }
+
+  /// Any thread: something new is in the topics. Apart from wake(), for it may come with each message
+  /// of a force loop.
+  void wake_foxglove() {
+    if (foxglove_awake.exchange(true)) return;
+    asio::post(context, [this] {
+      foxglove_awake = false;
+      pump_foxglove();
     });
   }
 
@@ -161,6 +182,7 @@ struct WebServer::Impl {
   ServerState state;
   std::string url;
   std::atomic<bool> awake{false};
+  std::atomic<bool> foxglove_awake{false};
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
   asio::steady_timer tick{context};
@@ -173,6 +195,8 @@ WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDes
     : impl_(std::make_unique<Impl>(config, mirror, pointers, std::move(execute))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });
   pointers.on_change([impl = impl_.get()] { impl->wake(); });
+  if (config.topics != nullptr)
+    config.topics->on_change([impl = impl_.get()] { impl->wake_foxglove(); });
   impl_->accept();
   impl_->report_status();
   impl_->thread = std::thread([impl = impl_.get()] { impl->run(); });
@@ -181,6 +205,7 @@ WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDes
 WebServer::~WebServer() {
   impl_->state.mirror.on_change({});
   impl_->state.pointers.on_change({});
+  if (impl_->state.topics != nullptr) impl_->state.topics->on_change({});
   impl_->context.stop();
   impl_->thread.join();
 }

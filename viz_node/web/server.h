@@ -9,6 +9,7 @@
 
 #include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
+#include "viz_node/topic_board.h"
 
 namespace cordis::viz {
 
@@ -20,6 +21,8 @@ struct ServerConfig {
   std::filesystem::path folder;  ///< the built page
   std::string token;             ///< what a page must know to command, beyond loopback
   PageRights rights;             ///< rights of pages that may command
+  std::uint64_t epoch = 0;       ///< identifies this life of the node
+  TopicBoard* topics = nullptr;  ///< what Foxglove reads, outlives the server; null: it is refused
 };
 
 /// What the server has done. Delays run from the hand to the view: from the newest device sample
@@ -39,7 +42,8 @@ class WebServer {
  public:
   /// Begins to listen. An occupied port is no error: the server takes the next free one, and logs
   /// a warning.
-  /// @param mirror, pointers  outlive the server; their on_change() is taken over
+  /// @param mirror, pointers  outlive the server; their on_change() is taken over, and that of the
+  /// topics
   /// @param execute    called from the server's thread with what a page wants of the simulation;
   ///                must not wait
   /// On an address beyond loopback a page may command only with the token in its address.

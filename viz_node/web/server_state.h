@@ -23,6 +23,7 @@
 #include "node/repeated_event.h"
 #include "viz_node/pointer_desk.h"
 #include "viz_node/scene_mirror.h"
+#include "viz_node/topic_board.h"
 #include "viz_node/web/access_token.h"
 #include "viz_node/web/request_filter.h"
 
@@ -40,6 +41,7 @@ inline constexpr auto kReplyTimeout = std::chrono::seconds(60);    // until all 
 inline constexpr std::size_t kMaxRequests = 64;                    // connections that are no page
 inline constexpr std::size_t kMaxPages = 64;
 
+class FoxgloveSession;
 class HttpSession;
 class WebSocketSession;
 
@@ -64,6 +66,9 @@ struct ServerState {
   std::uint64_t request_count = 0;
   std::uint32_t page_count = 0;  ///< pages that ever came: their numbers
   std::unordered_set<WebSocketSession*> clients;
+  TopicBoard* topics = nullptr;  ///< what Foxglove reads; set if `hosts.foxglove` is
+  std::string server_info;       ///< the first message to Foxglove
+  std::unordered_set<FoxgloveSession*> foxglove_clients;
   node::RepeatedEvent closures{"closed connections to pages"};
 
   std::size_t pages() const noexcept { return connections - requests.size(); }
