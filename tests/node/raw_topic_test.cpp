@@ -1,4 +1,5 @@
 // tests/node/raw_topic_test.cpp -- topics of any type, read and written as bytes.
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,6 +16,7 @@
 #include "node/dds/raw_writer.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
+#include "node/topic_follower.h"
 #include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
 
@@ -95,6 +97,34 @@ TEST(RawTopic, AnObserverOfALoopReceivesEverySampleInOrder) {
   for (const Received::Copy& copy : received.copies()) EXPECT_EQ(copy.sequence, ++before);
   msg::GesturePositions newest;
   EXPECT_TRUE(eventually([&] { return reader.take(newest) && newest.sample() == kSent; }));
+}
+
+/// A topic that is not wanted has no reader, so it costs its writer nothing.
+TEST(RawTopic, AFollowerReadsATopicWhileItIsWanted) {
+  Participant node({test::own_domain(), "followed", "node"});
+  Participant observer({test::own_domain(), "followed", "observer"});
+  Writer<msg::NodeStatus> writer(node, Topic::kStatus);
+  msg::NodeStatus status;
+  status.node_id(7);
+  ASSERT_TRUE(writer.write(status));
+  Received received;
+  std::atomic<bool> is_wanted{false};
+  std::atomic<int> looks{0};
+  node::TopicFollower follower(
+      observer, [&](const RawTopic& topic) { return topic.name == "node/status" && is_wanted; },
+      [sink = received.sink()](const RawTopic&, const RawSample& sample) { sink(sample); },
+      [&](const std::vector<FoundWriter>& writers) { looks += writers.empty() ? 0 : 1; });
+
+  ASSERT_TRUE(eventually([&] { return looks > 3; }));
+  EXPECT_EQ(writer.matched_count(), 0);
+  for (std::size_t times = 1; times <= 2; ++times) {
+    is_wanted = true;
+    EXPECT_TRUE(eventually([&] { return received.copies().size() == times; }))
+        << "what is kept for late joiners comes to each reader";
+    EXPECT_EQ(writer.matched_count(), 1);
+    is_wanted = false;
+    EXPECT_TRUE(eventually([&] { return writer.matched_count() == 0; }));
+  }
 }
 
 /// Reads a topic as bytes, writes them into another session, and reads them there with their type.

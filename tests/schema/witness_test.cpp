@@ -39,6 +39,7 @@ constexpr std::array kExceptions{
     Exception{"launch nodes.NAME.threads", "of scenes larger than any that ships"},
     Exception{"launch nodes.NAME.address", "opens a page to the network: nothing that ships does"},
     Exception{"launch nodes.NAME.scenes", "what a page may load is a right that its owner gives"},
+    Exception{"launch nodes.NAME.foxglove", "who may read all topics is a right likewise"},
     Exception{"device driver: ", "a driver of hardware is named by who has it"},
     Exception{"device stiffness_limit_n_per_m", "overrules the check of a device"},
     Exception{"device damping_limit_n_s_per_m", "overrules the check of a device"},

@@ -174,7 +174,8 @@ const cases = {
 
     await late.subscribe('scene/description');
     await until('both have the description', () => reader.of('scene/description').length > 0 && late.of('scene/description').length > 0);
-    for (const each of [reader, late]) assert.deepEqual(each.of('scene/description').map(({ value }) => value.name), ['coasting']);
+    for (const each of [reader, late])
+      for (const { value } of each.of('scene/description')) assert.equal(value.name, 'coasting');
 
     reader.client.unsubscribe(signals);
     const last = await until('the end of the subscription is understood', async () => {
