@@ -24,7 +24,7 @@ inline const std::vector<ControlVerb>& control_verbs() {
       {msg::VERB_RESET, "reset", "", "Restart the scene, with its present parameters"},
       {msg::VERB_LOAD, "load", "SCENE", "Play another scene from its beginning"},
       {msg::VERB_SET, "set", "NAME.PARAMETER=VALUE ...",
-       "Change parameters of liaisons or named links"},
+       "Change parameters of liaisons, named links or the world"},
       {msg::VERB_STATE, "state", "LINKS STATE", "Put links into a state"},
       {msg::VERB_GET, "get", "NAME[.PARAMETER] ...", "Say what parameters are now"},
       {msg::VERB_SEEK, "seek", "TIME", "Go to this time of a take that is played"},

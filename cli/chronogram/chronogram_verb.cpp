@@ -71,6 +71,7 @@ int chronogram(const ChronogramWords& words) {
   const double every_s = seconds_of(parse_duration(words.every));
   node::install_stop_signals();
   const std::unique_ptr<SceneSource> source = open_source("chronogram", words.source);
+  words.view.check_colour(source->description());
   const double start_s = start_of(words.source, *source);
   std::vector<msg::SceneFrame> frames = take_frames(*source, start_s, every_s, count);
   const std::size_t found = frames.size();

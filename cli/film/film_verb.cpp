@@ -47,15 +47,17 @@ int film(const FilmWords& words) {
   const double fps = parse_number("--fps", words.fps, 0.1, kHighestRate);
   const double speed = parse_number("--speed", words.speed, 1e-4, 1e4);
   const ImageSize size = parse_size(words.size);
+  const viz::ColourBy colour_by = words.view.colour_by();
   node::install_stop_signals();
   const std::unique_ptr<SceneSource> source = open_source("film", words.source);
   const double start_s = start_of(words.source, *source);
   const double duration_s = duration_of(words.duration, *source, start_s);
+  words.view.check_colour(source->description());
   viz::FilmView view(source->description(), {.width = size.width,
                                              .height = size.height,
                                              .theme = words.view.theme_or(viz::Theme::kDark),
                                              .view = words.view.preset(),
-                                             .colour_by = words.view.colour_by(),
+                                             .colour_by = colour_by,
                                              .note = speed_note(speed)});
   FilmWriter writer(words.out, size.width, size.height, fps);
   ProgressLine progress;

@@ -30,13 +30,24 @@ viz::Theme ViewWords::theme_or(viz::Theme usual) const {
 viz::ColourBy ViewWords::colour_by() const {
   if (colour.empty() || colour == "body") return viz::ColourBy::kBody;
   if (colour == "speed") return viz::ColourBy::kSpeed;
-  throw UsageError("--colour is body or speed, not '" + colour + "'");
+  if (colour == "force") return viz::ColourBy::kForce;
+  if (colour == "components") return viz::ColourBy::kComponents;
+  if (colour == "stretch") return viz::ColourBy::kStretch;
+  throw UsageError("--colour is body, speed, force, components or stretch, not '" + colour + "'");
+}
+
+void ViewWords::check_colour(const msg::SceneDescription& description) const {
+  const viz::ColourBy what = colour_by();
+  const bool is_of_links = what == viz::ColourBy::kComponents || what == viz::ColourBy::kStretch;
+  if (is_of_links && description.link_ends().empty())
+    throw UsageError("--colour " + colour + " is of links, and this scene has none");
 }
 
 void add_view_options(Verb& verb, ViewWords& words, const std::string& theme) {
   verb.option("--camera", "VIEW", words.camera,
               "front, side, top or free [front; free for a scene in space]");
-  verb.option("--colour", "WHAT", words.colour, "Colour masses by body or by speed [body]");
+  verb.option("--colour", "WHAT", words.colour,
+              "Colours say body, speed, force, components or stretch [body]");
   verb.option("--theme", "THEME", words.theme, "dark or light [" + theme + "]");
 }
 

@@ -18,6 +18,8 @@ struct ViewWords {
   std::optional<viz::ViewPreset> preset() const;
   viz::Theme theme_or(viz::Theme usual) const;
   viz::ColourBy colour_by() const;
+  /// Components and stretch are of links. @throws UsageError for a scene without any.
+  void check_colour(const msg::SceneDescription& description) const;
 };
 
 /// @param theme  what is usual, for the help

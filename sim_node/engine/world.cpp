@@ -329,9 +329,13 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   StepEnergy change;
   change.switching = state_->stored_energy() - stored_before;
   state_->account.add(change);
-  // The rest belongs to linear links in 1 dimension, whose energy stands in no account.
+  // The rest belongs to linear links in 1 dimension, whose energy stands in no account, and to gravity.
+  // That has another potential at the start as well, so that the change depends on no origin.
+  const double start_shift =
+      gravity_at_start(network().description()) - gravity_at_start(before.network().description());
+  state_->account.shift_initial(start_shift);
   StepEnergy rest;
-  rest.switching = energy().total() - energy_before.total() - change.switching;
+  rest.switching = energy().total() - energy_before.total() - change.switching - start_shift;
   rest.elastic = -rest.switching;
   state_->account.add(rest);
   state_->scheme->adopt(*state_);

@@ -9,6 +9,7 @@
 #include "node/config/nearest_word.h"
 #include "sim_node/scene/language/formula.h"
 #include "sim_node/scene/liaisons/liaison_reader.h"
+#include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
 
@@ -16,6 +17,9 @@ namespace {
 
 using Outcome = Parameters::Outcome;
 using Origin = StateMachinePool::Origin;
+
+constexpr const char* kWorld = "world";
+constexpr const char* kMediumViscosity = "viscosity_n_s_per_m";
 
 Outcome refused(std::string problem, std::string hint = {}) {
   return {{}, std::move(problem), std::move(hint)};
@@ -59,6 +63,20 @@ std::vector<std::string> parameters_of_group(const LinkGroup& group, const Scene
   return {kStiffness, kViscosity};
 }
 
+/// The words for the axes of gravity: one in 1-D, which is what a scene writes there.
+std::vector<std::string> gravity_words(int space) {
+  if (space == 1) return {"gravity_m_per_s2"};
+  std::vector<std::string> words;
+  for (const std::string& axis : axis_words(space))
+    words.push_back("gravity_" + axis + "_m_per_s2");
+  return words;
+}
+
+bool has_mass(const engine::NetworkDescription& network) {
+  return std::any_of(network.mats.begin(), network.mats.end(),
+                     [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; });
+}
+
 Outcome unknown_parameter(const std::string& name, const std::string& parameter,
                           const std::vector<std::string>& words) {
   std::string hint = config::did_you_mean(parameter, words);
@@ -71,6 +89,11 @@ Outcome unknown_parameter(const std::string& name, const std::string& parameter,
 void apply(const Change& change, engine::NetworkDescription& network) {
   if (change.kind == Change::Kind::kStateMachine) {
     network.state_machines[change.first] = change.state_machine;
+    return;
+  }
+  if (change.kind == Change::Kind::kWorld) {
+    network.gravity = change.gravity;
+    network.medium_viscosity = change.medium_viscosity;
     return;
   }
   const auto put = [&](auto& links) {
@@ -131,17 +154,21 @@ struct Parameters::Target {
   }
 };
 
-Parameters::Parameters(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+Parameters::Parameters(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)),
+      gravity_(scene_->network.gravity),
+      medium_viscosity_(scene_->network.medium_viscosity) {}
 
 Outcome Parameters::set(const std::string& name, const std::string& parameter, double value) {
   if (!std::isfinite(value)) return refused("a parameter must be a finite number");
   if (scene_->liaisons != nullptr && scene_->liaisons->find(name) != nullptr)
     return set_of_liaison(name, parameter, value);
-  const std::vector<std::string> known = names();
+  const std::vector<std::string> known = names_of_links();
   if (std::find(known.begin(), known.end(), name) != known.end())
     return set_of_links(name, parameter, value);
+  if (name == kWorld) return set_of_world(parameter, value);
   return refused("no liaison and no links are named '" + name + "'",
-                 config::did_you_mean(name, known));
+                 config::did_you_mean(name, names()));
 }
 
 Outcome Parameters::set_of_liaison(const std::string& name, const std::string& parameter,
@@ -251,6 +278,37 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   return outcome;
 }
 
+Outcome Parameters::set_of_world(const std::string& parameter, double value) {
+  std::vector<std::string> words;
+  for (const auto& [word, unused] : values_of_world()) words.push_back(word);
+  const std::vector<std::string> axes = gravity_words(scene_->space());
+  const auto axis = std::find(axes.begin(), axes.end(), parameter);
+  if (std::find(words.begin(), words.end(), parameter) == words.end()) {
+    if (axis != axes.end()) return refused("gravity follows a formula of time in this scene");
+    if (parameter == kMediumViscosity)
+      return refused("the medium flows, so its viscosity keeps its value while a run goes on");
+    return unknown_parameter(kWorld, parameter, words);
+  }
+  if (axis == axes.end() && value < 0.0) return refused("'" + parameter + "' must be >= 0");
+  if (std::abs(value) > kFarthest) return refused("'" + parameter + "' must be within 1e6");
+  (axis == axes.end() ? medium_viscosity_ : gravity_[axis - axes.begin()]) = value;
+  Change change;
+  change.kind = Change::Kind::kWorld;
+  change.gravity = gravity_;
+  change.medium_viscosity = medium_viscosity_;
+  return {{change}, {}, {}};
+}
+
+std::vector<std::pair<std::string, double>> Parameters::values_of_world() const {
+  std::vector<std::pair<std::string, double>> values;
+  if (!scene_->gravity_changes) {
+    for (const std::string& word : gravity_words(scene_->space()))
+      values.emplace_back(word, gravity_[static_cast<Eigen::Index>(values.size())]);
+  }
+  if (!scene_->medium_flows) values.emplace_back(kMediumViscosity, medium_viscosity_);
+  return values;
+}
+
 Parameters::Values Parameters::get(const std::string& what) const {
   Values found;
   const std::vector<std::string> known = names();
@@ -309,6 +367,7 @@ std::vector<std::pair<std::string, double>> Parameters::values_of(const std::str
           merged(merged(set_later(of_liaison_, origin.liaison), origin.overrides), own));
     }
   }
+  if (name == kWorld) return values_of_world();
   return {};
 }
 
@@ -346,10 +405,17 @@ std::vector<std::string> Parameters::names_in_use() const {
   }
   for (const LinkGroup& group : scene_->link_groups)
     if (group.liaison.empty() && !group.name.empty()) add_words(names, {group.name});
+  if (has_mass(scene_->network)) add_words(names, {kWorld});
   return names;
 }
 
 std::vector<std::string> Parameters::names() const {
+  std::vector<std::string> names = names_of_links();
+  add_words(names, {kWorld});
+  return names;
+}
+
+std::vector<std::string> Parameters::names_of_links() const {
   std::vector<std::string> names =
       scene_->liaisons ? scene_->liaisons->names() : std::vector<std::string>{};
   for (const LinkGroup& group : scene_->link_groups) {

@@ -18,7 +18,8 @@ struct Change {
   enum class Kind : std::uint8_t {
     kStateMachine,  ///< for World::replace_state_machine; it has the states it had
     kLinks,         ///< linear links, which a World takes only with a new Network
-    kMaxwellLinks   ///< likewise
+    kMaxwellLinks,  ///< likewise
+    kWorld          ///< gravity and medium, likewise
   };
   Kind kind = Kind::kStateMachine;
   std::uint32_t first = 0;  ///< index of the state machine, or of the first link among those of its
@@ -27,14 +28,16 @@ struct Change {
   engine::StateMachine state_machine;  ///< new machine for kStateMachine
   std::optional<double> stiffness;     ///< stiffness of links [N/m]; as it is when there is none
   std::optional<double> viscosity;     ///< viscosity of links [N s/m]; as it is when there is none
+  engine::Vec3 gravity = engine::Vec3::Zero();  ///< for kWorld [m/s^2]
+  double medium_viscosity = 0.0;                ///< for kWorld [N s/m]
 };
 
 /// Makes a change in a description: a World of a Network made from it is as if the scene had been
 /// written so.
 void apply(const Change& change, engine::NetworkDescription& network);
 
-/// The parameters of the liaisons and the links of a scene, as they have been set since it was
-/// read.
+/// The parameters of the liaisons, the links and the world of a scene, as they have been set since it
+/// was read.
 class Parameters {
  public:
   explicit Parameters(std::shared_ptr<const Scene> scene);
@@ -49,7 +52,9 @@ class Parameters {
   /// Sets a parameter of a liaison, for all its links that give it no value of their own; or of the
   /// links of a name (a `name` of the scene, or string.links), which must not share their state
   /// machine with others. Parameters are those that a link may give. What follows from the
-  /// parameter by a formula follows. Nothing is set after a problem. Not in real time.
+  /// parameter by a formula follows. `world`, where nothing else has this name, has the axes of a
+  /// constant gravity and the viscosity of a medium at rest. Nothing is set after a problem. Not in
+  /// real time.
   [[nodiscard]] Outcome set(const std::string& name, const std::string& parameter, double value);
 
   /// Parameters with their values, or why there are none.
@@ -64,7 +69,7 @@ class Parameters {
   [[nodiscard]] Values get(const std::string& what) const;
 
   /// Names that get() and set() take: the liaisons that links or sets are of, in the order of the
-  /// scene, then the links that are of no liaison.
+  /// scene, the links that are of no liaison, and the world where it acts on a mass.
   [[nodiscard]] std::vector<std::string> names_in_use() const;
 
  private:
@@ -78,11 +83,16 @@ class Parameters {
                                        double value);
   [[nodiscard]] Outcome set_of_links(const std::string& name, const std::string& parameter,
                                      double value);
+  [[nodiscard]] Outcome set_of_world(const std::string& parameter, double value);
+  std::vector<std::pair<std::string, double>> values_of_world() const;
   std::vector<std::string> names() const;
+  std::vector<std::string> names_of_links() const;  ///< and of liaisons
 
   std::shared_ptr<const Scene> scene_;
   std::map<std::string, ParameterOverrides> of_liaison_;  // values set since, by its name
   std::map<std::string, ParameterOverrides> of_links_;    // by the name of the links
+  engine::Vec3 gravity_;                                  // [m/s^2]
+  double medium_viscosity_;                               // [N s/m]
 };
 
 }  // namespace cordis::scene

@@ -153,6 +153,8 @@ struct Scene {
   double gesture_rate_hz = 0.0;  ///< exchanges with a device per second
   double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
   engine::NetworkDescription network;  ///< its dimension is the `space` of the file
+  bool gravity_changes = false;        ///< gravity follows formulas of time: forces, not `gravity`
+  bool medium_flows = false;
   std::vector<NamedRange> matter;  ///< names of MATs in the order of the indices; a port has one
                                    ///< MAT
   std::vector<NamedRange> links;   ///< names of links in the order of their numbers; see

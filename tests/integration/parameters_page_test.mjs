@@ -51,6 +51,19 @@ const cases = {
     assert.match(await reported(session, STIFFNESS), / = 120$/);
   },
 
+  'gravity has a slider that goes from one direction to the other': async (session) => {
+    const { page } = session;
+    const name = 'world.gravity_y_m_per_s2';
+    assert.equal(await row(page, name).locator('label').textContent(), 'world gravity y [m/s²]');
+    assert.equal(await numberOf(page, name).inputValue(), '0');
+    await row(page, name).locator('input[type=range]').focus();
+    await page.keyboard.press('Home');
+    await until('sim_node has it', async () => (await reported(session, name)).endsWith(`${name} = -20`));
+    await numberOf(page, name).fill('0');
+    await page.keyboard.press('Enter');
+    await until('it is off again', async () => (await reported(session, name)).endsWith(`${name} = 0`));
+  },
+
   'slow motion: a slider and two keys slow the simulation, and the simulated devices follow': async ({ page }) => {
     await until('the slider is there', () => page.locator('#slow').isVisible());
     assert.equal(await textOf(page, '#slow-text'), '×1');

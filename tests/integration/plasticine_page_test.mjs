@@ -65,8 +65,8 @@ const cases = {
     const handle = await placeOf(page, ports[0].mat);
     const { metresPerPixel } = await viz(page, 'camera');
     await drag(page, handle, metresPerPixel);
-    const { held } = await pointer(page);
-    assert.ok(held.some(({ byThisPage }) => byThisPage), 'this page holds the thimble');
+    // On a busy machine the page may be silent for so long that it has to take hold again.
+    await until('this page holds the thimble', async () => (await pointer(page)).held.some(({ byThisPage }) => byThisPage));
     await until('the slab is torn', async () => (await pieces(page)) > 1);
     await page.screenshot({ path: join(out, 'plasticine_torn.png') });
     await page.mouse.up();

@@ -128,6 +128,61 @@ TEST_F(ParametersOfAScene, OfImpossibleValuesAreRefused) {
   EXPECT_EQ(network.maxwell_links[0].stiffness, 5.0);
 }
 
+TEST_F(ParametersOfAScene, OfTheWorldAreEachAxisOfGravityAndTheMedium) {
+  after("world", "gravity_y_m_per_s2", -1.6);
+  EXPECT_EQ(problem, "");
+  EXPECT_EQ(network.gravity, engine::Vec3(0.0, -1.6, 0.0));
+  after("world", "gravity_x_m_per_s2", 3.0);
+  after("world", "viscosity_n_s_per_m", 0.5);
+  EXPECT_EQ(network.gravity, engine::Vec3(3.0, -1.6, 0.0));
+  EXPECT_EQ(network.medium_viscosity, 0.5);
+  const Parameters::Values values = parameters.get("world");
+  EXPECT_EQ(values.entries,
+            (std::vector<std::pair<std::string, double>>{{"world.gravity_x_m_per_s2", 3.0},
+                                                         {"world.gravity_y_m_per_s2", -1.6},
+                                                         {"world.viscosity_n_s_per_m", 0.5}}));
+  EXPECT_EQ(parameters.names_in_use().back(), "world");
+
+  after("world", "gravity_z_m_per_s2", 1.0);
+  EXPECT_EQ(problem, "'world' has no parameter 'gravity_z_m_per_s2'");
+  after("world", "viscosity_n_s_per_m", -1.0);
+  EXPECT_EQ(problem, "'viscosity_n_s_per_m' must be >= 0");
+  after("world", "gravity_x_m_per_s2", 2e6);
+  EXPECT_EQ(problem, "'gravity_x_m_per_s2' must be within 1e6");
+  after("wrld", "gravity_x_m_per_s2", 1.0);
+  EXPECT_EQ(hint, "did you mean 'world'?");
+  EXPECT_EQ(network.gravity, engine::Vec3(3.0, -1.6, 0.0));
+}
+
+TEST(Parameters, OfAWorldThatFollowsFormulasAreKept) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(1,
+                                                               R"(
+world: {gravity_m_per_s2: sin(time_s), viscosity_n_s_per_m: 1, flow_m_per_s: 2}
+matter: {bob: {kind: mass, mass_kg: 1, at_m: 0}}
+)"));
+  Parameters parameters(scene);
+  EXPECT_EQ(parameters.set("world", "gravity_m_per_s2", 1.0).problem,
+            "gravity follows a formula of time in this scene");
+  EXPECT_EQ(parameters.set("world", "viscosity_n_s_per_m", 2.0).problem,
+            "the medium flows, so its viscosity keeps its value while a run goes on");
+  EXPECT_TRUE(parameters.get("world").entries.empty());
+}
+
+TEST(Parameters, OfLinksCalledWorldAreThoseOfTheLinks) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(1,
+                                                               R"(
+liaisons: {world: {kind: spring, stiffness_n_per_m: 3}}
+matter:
+  wall: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 1, at_m: 1}
+links: [{liaison: world, between: [wall, bob]}]
+)"));
+  Parameters parameters(scene);
+  EXPECT_EQ(parameters.set("world", "stiffness_n_per_m", 4.0).changes.size(), 1u);
+  EXPECT_NE(parameters.set("world", "gravity_m_per_s2", 4.0).problem, "");
+  EXPECT_EQ(parameters.names_in_use(), std::vector<std::string>{"world"});
+}
+
 TEST(Parameters, OfMatterThatSharesItsStateMachineAreThoseOfTheLiaison) {
   const auto scene = std::make_shared<const Scene>(sound_scene(2,
                                                                R"(liaisons:

@@ -121,7 +121,8 @@ TEST_F(CommandExecutorTest, SaysEveryParameterOfTheSceneWhenNoneIsNamed) {
   execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 101}");
   const node::Answer answer = execute(msg::VERB_GET);
   EXPECT_TRUE(answer.accepted);
-  EXPECT_EQ(answer.text, execute(msg::VERB_GET, "spring").text);
+  EXPECT_EQ(answer.text,
+            execute(msg::VERB_GET, "spring").text + '\n' + execute(msg::VERB_GET, "world").text);
   EXPECT_NE(answer.text.find("spring.stiffness_n_per_m = 101"), std::string::npos) << answer.text;
 }
 
@@ -200,6 +201,20 @@ TEST_F(CommandExecutorTest, SetsParametersOfALiaisonInTheRunningScene) {
   EXPECT_GT(runner_.simulation().world().step_count(), 0u);
   EXPECT_EQ(runner_.loaded_scene().frames.shape().version, 1u) << "it is the same scene";
   EXPECT_TRUE(published_.empty());
+}
+
+TEST_F(CommandExecutorTest, SetsTheWorldOfTheRunningScene) {
+  const node::Answer answer =
+      execute(msg::VERB_SET, "{world.gravity_m_per_s2: -9.8, world.viscosity_n_s_per_m: 0.2}");
+  EXPECT_TRUE(answer.accepted) << answer.text;
+  EXPECT_EQ(execute(msg::VERB_GET, "world").text,
+            "world.gravity_m_per_s2 = -9.8\nworld.viscosity_n_s_per_m = 0.2");
+  execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 300}");
+  end_loop();
+  const engine::NetworkDescription& network = runner_.simulation().world().network().description();
+  EXPECT_EQ(network.gravity.x(), -9.8) << "set before, and kept";
+  EXPECT_EQ(network.medium_viscosity, 0.2);
+  EXPECT_EQ(runner_.loaded_scene().frames.shape().version, 1u) << "it is the same scene";
 }
 
 TEST_F(CommandExecutorTest, SetsAllOrNothing) {

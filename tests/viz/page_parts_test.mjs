@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
+  const names = ['net_forces', 'colouring', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf, percentOf } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -206,6 +206,17 @@ const cases = {
       ['hook', 2, [1, 2, 0]],
     ]);
     assert.deepEqual([0, 1, 2, 3, 4, 5].map((set) => groups.patternOf(set)), [0, 1, 2, 1, 2, 2]);
+  },
+
+  'a share is read again from its percent, to two digits': () => {
+    const random = lot(6);
+    for (let run = 0; run < RUNS; ++run) {
+      const share = 10 ** (10 * random() - 8); // from a millionth of a percent to 10,000 %
+      const text = percentOf(share);
+      assert.match(text, /^[\d.]+(e-\d+)? %$/);
+      assert.ok(Math.abs(Number.parseFloat(text) / (100 * share) - 1) <= 0.0501, `${text} of ${share}`);
+    }
+    assert.deepEqual([0, 0.005, 0.1, 0.26, 2.6].map(percentOf), ['0 %', '0.50 %', '10 %', '26 %', '260 %']);
   },
 
   'a key is as wide as its pitch, across its way': () => {

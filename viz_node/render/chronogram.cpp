@@ -52,6 +52,7 @@ Chronogram::Chronogram(const msg::SceneDescription& description,
       unit_(options.width / 1200.0) {
   CORDIS_ASSERT(!frames_.empty());
   painter_.colour_by(options.colour_by);
+  painter_.find_scale(frames_);
   painter_.start(frames_.front());
   box_ = painter_.bounds(frames_.front());
   for (const msg::SceneFrame& frame : frames_)
@@ -108,6 +109,7 @@ void Chronogram::draw(Canvas& canvas) {
   canvas.text({side, 28.0 * unit_, 0.0}, 18.0 * unit_, Anchor::kStart, palette.text, name_);
   canvas.text({options_.width - side, 28.0 * unit_, 0.0}, 14.0 * unit_, Anchor::kEnd, palette.quiet,
               interval_text());
+  draw_scale(canvas, painter_, {0.5 * options_.width, 28.0 * unit_, 0.0}, 12.0 * unit_);
   const bool is_overlay = options_.layout == ChronogramLayout::kOverlay;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const std::size_t cell = is_overlay ? 0 : i;

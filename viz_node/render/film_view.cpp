@@ -72,6 +72,7 @@ void FilmView::draw_words(const msg::SceneFrame& frame, const ViewCamera& camera
     canvas_.text({right - 110.0 * unit_, 36.0 * unit_, 0.0}, 14.0 * unit_, Anchor::kEnd,
                  palette.quiet, options_.note);
   }
+  draw_scale(canvas_, painter_, {0.5 * options_.width, 30.0 * unit_, 0.0}, 13.0 * unit_);
   draw_ruler(canvas_, palette, camera.metres_per_pixel(), {side, foot, 0.0}, 14.0 * unit_,
              160.0 * unit_);
   draw_legend(canvas_, painter_, {side + 300.0 * unit_, foot, 0.0}, 14.0 * unit_,

@@ -31,6 +31,13 @@ std::string with_unit(double value, const std::string& unit) {
   return fmt::format("{:.3g} {}{}", value / prefix.factor, prefix.letter, unit);
 }
 
+std::string percent_text(double share) {
+  const double percent = 100.0 * share;
+  if (percent >= 9.95 || percent == 0.0) return fmt::format("{:.0f} %", percent);
+  if (percent >= 0.01) return fmt::format("{:#.2g} %", percent);
+  return fmt::format("{:.1e} %", percent);
+}
+
 std::string short_text(double value, int decimals) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.find('.') != std::string::npos) {

@@ -17,6 +17,9 @@ Prefix prefix_of(double size) noexcept;
 /// Three significant digits at most and a prefix: "50 mm", "1.25 kN".
 std::string with_unit(double value, const std::string& unit);
 
+/// A share as percent, two digits or more: "0.50 %", "260 %".
+std::string percent_text(double share);
+
 /// The shortest text of a number with at most so many decimals: "0.5", "12".
 std::string short_text(double value, int decimals);
 

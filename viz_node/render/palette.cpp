@@ -42,6 +42,7 @@ Palette read_palette(const char* name) {
           .bodies = list_of(theme, "bodies"),
           .link_states = list_of(theme, "link_states"),
           .speeds = list_of(theme, "speeds"),
+          .stretches = list_of(theme, "stretches"),
           .signals = list_of(theme, "signals")};
 }
 

@@ -36,6 +36,7 @@ struct Palette {
   std::vector<Colour> bodies;
   std::vector<Colour> link_states;  ///< by the number of the state; the first without states
   std::vector<Colour> speeds;       ///< from rest to the fastest
+  std::vector<Colour> stretches;    ///< from the shortest to the longest
   std::vector<Colour> signals;
 };
 

@@ -17,7 +17,6 @@ namespace cordis::viz {
 namespace {
 
 constexpr std::size_t kFewMats = 3000;  // which are drawn larger than they are, to be seen
-constexpr double kFade = 0.985;         // of the fastest speed, per frame
 constexpr double kGridCells = 24.0;     // across the larger side of the scene, about
 constexpr double kUpright = 0.5;        // of the height of a scene, the least width of its grid
 constexpr double kEdgeShare = 0.35;     // of the colour of texts in the edge of a coloured surface
@@ -68,10 +67,13 @@ ScenePainter::ScenePainter(const msg::SceneDescription& description, Theme theme
       link_ends_(description.link_ends()),
       surfaces_(description.surfaces()),
       surface_mat_(mats_of_surfaces(description)),
-      has_planes_(std::ranges::any_of(surfaces_, [](const msg::SurfaceDescription& surface) {
-        return surface.kind() == msg::SURFACE_PLANE;
-      })) {
+      has_planes_(std::ranges::any_of(surfaces_,
+                                      [](const msg::SurfaceDescription& surface) {
+                                        return surface.kind() == msg::SURFACE_PLANE;
+                                      })),
+      colouring_(description, palette_) {
   find_looks(description);
+  colouring_.set_free_masses(free_masses());
   find_bodies(description);
   if (!description.colours().empty()) find_coloured_parts(description);
   find_coloured_surfaces();
@@ -267,46 +269,35 @@ Box ScenePainter::matter_bounds(const msg::SceneFrame& frame, double outliers) c
   return box;
 }
 
-void ScenePainter::measure_speeds(const msg::SceneFrame& frame) {
-  const double elapsed_s = frame.simulated_s() - before_s_;
-  if (before_.size() == frame.position_m().size() && elapsed_s > 0.0) {
-    speed_.resize(radius_.size());
-    fastest_ *= kFade;
-    for (std::size_t mat = 0; mat < speed_.size(); ++mat) {
-      const float* then = before_.data() + 3 * mat;
-      speed_[mat] = distance(point_of(frame, mat), {then[0], then[1], then[2]}) / elapsed_s;
-      if (look_[mat] == Look::kMass) fastest_ = std::max(fastest_, speed_[mat]);
-    }
-  }
-  before_ = frame.position_m();
-  before_s_ = frame.simulated_s();
+std::vector<bool> ScenePainter::free_masses() const {
+  std::vector<bool> is_free;
+  for (const Look look : look_) is_free.push_back(look == Look::kMass);
+  return is_free;
 }
 
-Colour ScenePainter::colour_of(std::size_t mat, double strength) const {
-  Colour colour = palette_.port;
-  if (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint)
-    colour = colours_.wanted(mat).value_or(palette_.fixed);
-  if (look_[mat] == Look::kMass) {
-    colour = bodies_[body_[mat]].colour;
-    if (colour_by_ == ColourBy::kSpeed) {
-      const std::vector<Colour>& speeds = palette_.speeds;
-      const double share = fastest_ > 0.0 && !speed_.empty() ? speed_[mat] / fastest_ : 0.0;
-      const double index = std::min(share, 1.0) * static_cast<double>(speeds.size() - 1);
-      const std::size_t below = std::min(static_cast<std::size_t>(index), speeds.size() - 1);
-      const std::size_t above = std::min(below + 1, speeds.size() - 1);
-      colour = mix(speeds[below], speeds[above], index - static_cast<double>(below));
-    }
-  }
+Colour ScenePainter::faded(const Colour& colour, double strength) const {
   return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
+}
+
+Colour ScenePainter::colour_of(std::size_t mat) const {
+  if (look_[mat] == Look::kFixedBall || look_[mat] == Look::kFixedPoint)
+    return colours_.wanted(mat).value_or(palette_.fixed);
+  if (look_[mat] == Look::kMass)
+    return colouring_.of_mass(mat).value_or(bodies_[body_[mat]].colour);
+  return palette_.port;
 }
 
 bool ScenePainter::is_shown(std::size_t link, const msg::SceneFrame& frame) const {
   return link >= frame.link_state().size() || frame.link_state()[link] < msg::LINK_IS_IDLE;
 }
 
-Colour ScenePainter::colour_of_state(std::size_t shown, double strength) const {
-  const Colour& colour = palette_.link_states[shown % palette_.link_states.size()];
-  return strength < 1.0 ? mix(palette_.background, colour, strength) : colour;
+const Colour& ScenePainter::colour_of_state(std::size_t shown) const {
+  return palette_.link_states[shown % palette_.link_states.size()];
+}
+
+Colour ScenePainter::colour_of_link(std::size_t link, const msg::SceneFrame& frame) const {
+  if (const std::optional<Colour> colour = colouring_.of_link(link)) return *colour;
+  return colour_of_state(link < frame.link_state().size() ? frame.link_state()[link] : 0);
 }
 
 void ScenePainter::project_all(const ViewOptions& options, const ViewCamera& camera,
@@ -316,7 +307,9 @@ void ScenePainter::project_all(const ViewOptions& options, const ViewCamera& cam
   size_.resize(radius_.size());
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
     Projected place = camera.project(point_of(frame, mat));
-    const double size = camera.radius_of(place, radius_[mat]);
+    // What is held keeps its true size.
+    const double share = look_[mat] == Look::kRing ? 1.0 : colouring_.radius_share();
+    const double size = camera.radius_of(place, share * radius_[mat]);
     size_[mat] = std::max(size, options.mark_scale * sizes[static_cast<std::size_t>(look_[mat])]);
     place.x += options.inner.x;
     place.y += options.inner.y;
@@ -333,7 +326,7 @@ void ScenePainter::draw_ball(Canvas& canvas, const ViewOptions& options, std::si
   if (place.x + reach < area.x || place.x - reach > area.x + area.width ||
       place.y + reach < area.y || place.y - reach > area.y + area.height)
     return;
-  const Colour colour = colour_of(mat, options.strength);
+  const Colour colour = faded(colour_of(mat), options.strength);
   if (look_[mat] == Look::kRing) {
     canvas.torus({place.x, place.y, place.z}, size, kHole, colour);
     return;
@@ -366,11 +359,11 @@ void ScenePainter::draw_link(Canvas& canvas, const ViewOptions& options, std::si
   const auto between = [&](double share) {
     return Place{from.x + share * x, from.y + share * y, from.z + share * z};
   };
-  const LinePattern pattern = link_pattern_.empty() ? LinePattern::kSolid : link_pattern_[link];
+  const bool is_solid = link_pattern_.empty() || colouring_.what() == ColourBy::kStretch;
+  const LinePattern pattern = is_solid ? LinePattern::kSolid : link_pattern_[link];
   draw_line(canvas, options.area,
             {between(begin), between(end), 1.4 * options.mark_scale, pattern, options.mark_scale},
-            colour_of_state(link < frame.link_state().size() ? frame.link_state()[link] : 0,
-                            options.strength));
+            faded(colour_of_link(link, frame), options.strength));
 }
 
 /// From middle to middle, before the two balls: these touch, so nothing would be seen between them.
@@ -387,7 +380,7 @@ void ScenePainter::draw_bond(Canvas& canvas, const ViewOptions& options, const M
              2.0 * options.mark_scale,
              mark.pattern,
              options.mark_scale},
-            colour_of_state(frame.bond_state()[mark.index], options.strength));
+            faded(colour_of_state(frame.bond_state()[mark.index]), options.strength));
 }
 
 void ScenePainter::draw_grid(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
@@ -457,7 +450,8 @@ void ScenePainter::sort_marks(const SurfacePainter& surfaces, const msg::SceneFr
     marks_.push_back({surfaces.layer_of(middle), 0.5 * (place_[a].z + place_[b].z),
                       static_cast<std::uint32_t>(link), MarkKind::kLink});
   }
-  add_bonds(surfaces, frame);
+  // A frame says nothing of the stretch of bonds.
+  if (colouring_.what() != ColourBy::kStretch) add_bonds(surfaces, frame);
   for (std::size_t mat = 0; mat < radius_.size(); ++mat) {
     if (look_[mat] == Look::kSurface) continue;
     marks_.push_back({surfaces.layer_of(point_of(frame, mat)), place_[mat].z,
@@ -482,7 +476,7 @@ void ScenePainter::draw_mark(Canvas& canvas, const ViewOptions& options, const M
 
 void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCamera& camera,
                         const Box& home, const msg::SceneFrame& frame) {
-  if (colour_by_ == ColourBy::kSpeed) measure_speeds(frame);
+  colouring_.take(frame);
   project_all(options, camera, frame);
   const SurfacePainter surfaces(
       options.shows_surroundings ? surfaces_in(frame) : std::vector<msg::SurfaceDescription>(),
@@ -504,7 +498,7 @@ void ScenePainter::draw(Canvas& canvas, const ViewOptions& options, const ViewCa
     if (look_[mat] != Look::kPort || place_[mat].scale <= 0.0) continue;
     canvas.ring({place_[mat].x, place_[mat].y, place_[mat].z},
                 size_[mat] + std::max(0.25 * size_[mat], 3.0 * options.mark_scale),
-                2.0 * options.mark_scale, colour_of(mat, options.strength));
+                2.0 * options.mark_scale, faded(colour_of(mat), options.strength));
   }
   canvas.end_view();
 }

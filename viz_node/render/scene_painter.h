@@ -8,6 +8,7 @@
 
 #include "idl/scene.h"
 #include "viz_node/render/canvas.h"
+#include "viz_node/render/colouring.h"
 #include "viz_node/render/line_pattern.h"
 #include "viz_node/render/palette.h"
 #include "viz_node/render/scene_colours.h"
@@ -15,9 +16,6 @@
 #include "viz_node/render/view_camera.h"
 
 namespace cordis::viz {
-
-/// What the colours of masses say.
-enum class ColourBy : std::uint8_t { kBody, kSpeed };
 
 /// Links of one liaison with states, whatever their parameters, or those without; or bonds of sets.
 struct LinkGroup {
@@ -44,7 +42,9 @@ class ScenePainter {
 
   /// Takes the sizes of punctual MATs from a first frame: a share of the usual length of a link.
   void start(const msg::SceneFrame& frame);
-  void colour_by(ColourBy what) noexcept { colour_by_ = what; }
+  void colour_by(ColourBy what) noexcept { colouring_.colour_by(what); }
+  /// All of these frames will be drawn, with one scale of colours.
+  void find_scale(const std::vector<msg::SceneFrame>& frames) { colouring_.find_scale(frames); }
 
   /// The box around the MATs with their radii, and the surfaces (bounds_with()).
   /// @param outliers  share of the MATs left out at either end of each axis, 0..0.5
@@ -76,8 +76,7 @@ class ScenePainter {
   bool has_punctual_tools() const noexcept { return has_punctual_tools_; }
   bool has_surfaces() const noexcept { return has_plain_surfaces_; }  ///< likewise
   const Palette& palette() const noexcept { return palette_; }
-  /// The speed that has the last colour [m/s]; 0 before two frames were drawn.
-  double fastest_speed() const noexcept { return fastest_; }
+  const Colouring& colouring() const noexcept { return colouring_; }
 
  private:
   /// How a MAT is drawn.
@@ -103,10 +102,13 @@ class ScenePainter {
   void find_bonds(const msg::SceneDescription& description);
   /// Gives a name in the legend to what looks like `body`.
   void name_fixed(const Body& body);
-  void measure_speeds(const msg::SceneFrame& frame);
-  Colour colour_of(std::size_t mat, double strength) const;
+  std::vector<bool> free_masses() const;
+  Colour colour_of(std::size_t mat) const;
+  Colour colour_of_link(std::size_t link, const msg::SceneFrame& frame) const;
   /// @param shown  as in a frame
-  Colour colour_of_state(std::size_t shown, double strength) const;
+  const Colour& colour_of_state(std::size_t shown) const;
+  /// A colour so strong against the background, 0..1.
+  Colour faded(const Colour& colour, double strength) const;
   bool is_shown(std::size_t link, const msg::SceneFrame& frame) const;
   void project_all(const ViewOptions& options, const ViewCamera& camera,
                    const msg::SceneFrame& frame);
@@ -145,11 +147,7 @@ class ScenePainter {
   bool has_rings_ = false;
   bool has_punctual_tools_ = false;
   bool has_ports_ = false;
-  ColourBy colour_by_ = ColourBy::kBody;
-  std::vector<float> before_;     // positions of the frame drawn last
-  double before_s_ = 0.0;         // its time
-  std::vector<double> speed_;     // per MAT [m/s]
-  double fastest_ = 0.0;          // [m/s]
+  Colouring colouring_;
   std::vector<Projected> place_;  // per MAT, in the canvas
   std::vector<double> size_;      // per MAT [pixels]
   std::vector<Mark> marks_;

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "viz_node/render/line_pattern.h"
 #include "viz_node/render/number_text.h"
@@ -18,6 +21,9 @@ namespace {
 constexpr double kSampleScale = 14.5;  // pixels of a font beside which dashes have their own length
 
 constexpr double kRowGap = 1.35;       // between two rows, in sizes of the font
+constexpr double kStripLength = 15.0;  // of a scale of colours, in sizes of the font
+constexpr double kStripHeight = 0.6;
+constexpr std::size_t kStripParts = 60;
 constexpr std::size_t kMaxStates = 3;  // names of states that look alike
 
 enum class Sign { kBall, kFixedPoint, kPort, kRing, kSurface, kLink };
@@ -82,12 +88,41 @@ void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
   add_looks(bonds, "bond of sets", colours, entries);
 }
 
+/// The largest components by their sizes.
+void add_components(const ScenePainter& painter, std::vector<Entry>& entries) {
+  const Palette& palette = painter.palette();
+  std::size_t smaller = 0;
+  for (const Components::Component& component : painter.colouring().components().list()) {
+    if (!component.colour) {
+      ++smaller;
+      continue;
+    }
+    const std::string what = entries.empty() ? "joined by links: " : "";
+    entries.push_back({Sign::kBall, what + fmt::format("{} MATs", component.size),
+                       palette.bodies[*component.colour % palette.bodies.size()]});
+  }
+  entries.push_back(
+      {Sign::kBall,
+       smaller > 0 ? fmt::format("{} smaller ones, and MATs alone", smaller) : "MATs alone",
+       palette.quiet});
+}
+
+/// What the colours of free masses say; a scale says it of speeds and forces.
+void add_masses(const ScenePainter& painter, std::vector<Entry>& entries) {
+  const ColourBy what = painter.colouring().what();
+  if (what == ColourBy::kComponents) add_components(painter, entries);
+  if (what == ColourBy::kStretch) entries.push_back({Sign::kBall, "mass", painter.palette().quiet});
+  const std::size_t most = painter.palette().bodies.size();
+  std::size_t count = 0;
+  for (const Body& body : painter.bodies()) {
+    if (body.mark == MatterMark::kMass && what != ColourBy::kBody) continue;
+    if (count++ < most) entries.push_back({sign_of(body.mark), body.name, body.colour});
+  }
+}
+
 std::vector<Entry> entries_of(const ScenePainter& painter) {
   std::vector<Entry> entries;
-  const std::size_t colours = painter.palette().bodies.size();
-  for (const Body& body : painter.bodies()) {
-    if (entries.size() < colours) entries.push_back({sign_of(body.mark), body.name, body.colour});
-  }
+  add_masses(painter, entries);
   const Palette& palette = painter.palette();
   if (painter.has_fixed_points())
     entries.push_back({Sign::kFixedPoint, "fixed point", palette.fixed});
@@ -98,7 +133,7 @@ std::vector<Entry> entries_of(const ScenePainter& painter) {
   if (painter.has_punctual_tools())
     entries.push_back({Sign::kBall, "tool that it holds", palette.port});
   if (painter.has_surfaces()) entries.push_back({Sign::kSurface, "surface", palette.surface});
-  add_links(painter, entries);
+  if (painter.colouring().what() != ColourBy::kStretch) add_links(painter, entries);
   return entries;
 }
 
@@ -184,6 +219,30 @@ void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, d
     canvas.text({item.x + 1.3 * size, y, 0.0}, size, Anchor::kStart, painter.palette().quiet,
                 item.entry.name);
   }
+}
+
+void draw_scale(Canvas& canvas, const ScenePainter& painter, const Place& at, double size) {
+  const std::optional<ColourScale> scale = painter.colouring().scale();
+  if (!scale) return;
+  const double length = kStripLength * size;
+  const double left = at.x - 0.5 * length;
+  const double top = at.y - kStripHeight * size;
+  const std::size_t parts = scale->is_stepped ? scale->colours.size() : kStripParts;
+  const double last = static_cast<double>(scale->colours.size() - 1);
+  for (std::size_t part = 0; part < parts; ++part) {
+    // Each part reaches to the end, and the next one covers it: so no seam is seen.
+    const double share = static_cast<double>(part) / static_cast<double>(parts);
+    const double index = last * static_cast<double>(part) / static_cast<double>(parts - 1);
+    const auto below = std::min(static_cast<std::size_t>(index), scale->colours.size() - 2);
+    canvas.fill(
+        {left + share * length, top, (1.0 - share) * length, kStripHeight * size},
+        mix(scale->colours[below], scale->colours[below + 1], index - static_cast<double>(below)));
+  }
+  const Palette& palette = painter.palette();
+  canvas.text({left - 0.5 * size, at.y, 0.0}, size, Anchor::kEnd, palette.text, scale->low);
+  canvas.text({left + length + 0.5 * size, at.y, 0.0}, size, Anchor::kStart, palette.text,
+              scale->high);
+  canvas.text({at.x, at.y + 1.3 * size, 0.0}, size, Anchor::kMiddle, palette.quiet, scale->caption);
 }
 
 void draw_ruler(Canvas& canvas, const Palette& palette, double metres_per_pixel, const Place& at,

@@ -16,6 +16,11 @@ inline constexpr int kLegendRows = 2;  ///< at most
 void draw_legend(Canvas& canvas, const ScenePainter& painter, const Place& at, double size,
                  double width);
 
+/// Draws the scale of the colours, if there is one: its ends on both sides, its meaning below.
+/// @param at    the middle of the lower edge of its strip
+/// @param size  of the font [pixels]
+void draw_scale(Canvas& canvas, const ScenePainter& painter, const Place& at, double size);
+
 /// Draws a ruler of a round length, at most `longest` pixels, with its length behind it.
 void draw_ruler(Canvas& canvas, const Palette& palette, double metres_per_pixel, const Place& at,
                 double size, double longest);

@@ -36,7 +36,7 @@ struct Energy {
   double port_work = 0.0;   ///< brought in by imposed positions and external forces since step 0
   double switching = 0.0;   ///< brought in by changes of state and of parameters since step 0: the
                             ///< sum of LinkEvent::energy
-  double initial = 0.0;     ///< kinetic + elastic + gravity at step 0
+  double initial = 0.0;     ///< kinetic + elastic + gravity at step 0, in the gravity of now
   double initial_gravity = 0.0;  ///< the part of gravity in it
   double elastic_error = 0.0;  ///< part of elastic that a finite step has put there, above what the
                                ///< laws of the links store: of order dt^2; 0 for linear links and

@@ -50,6 +50,9 @@ class EnergyAccount {
   /// forces only a law that is cut off takes any: they are frozen, and viscosity needs a speed.
   void begin_dissipated(double since) noexcept { dissipated_ = -since; }
 
+  /// Another gravity gives the start another potential [J].
+  void shift_initial(double difference) noexcept { initial_ += difference; }
+
   /// Enters one step, or a change between two.
   void add(const StepEnergy& step) noexcept;
 

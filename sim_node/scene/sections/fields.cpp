@@ -57,20 +57,21 @@ WorldFields read_world(const Value& section, Scene& scene, config::Problems& pro
   WorldFields fields;
   const int space = scene.space();
   const Value gravity = reader.optional_value("gravity_m_per_s2");
-  const bool gravity_changes = gravity.exists() && has_formula(gravity);
-  if (!gravity_changes) {
+  scene.gravity_changes = gravity.exists() && has_formula(gravity);
+  if (!scene.gravity_changes) {
     scene.network.gravity = optional_point(reader, "gravity_m_per_s2", engine::Vec3::Zero(), space);
   }
   scene.network.medium_viscosity =
       reader.optional_number("viscosity_n_s_per_m", 0.0, config::Range::not_negative());
-  const bool flows = reader.optional_value("flow_m_per_s").exists();
-  if (gravity_changes || flows) {
+  scene.medium_flows = reader.optional_value("flow_m_per_s").exists();
+  if (scene.gravity_changes || scene.medium_flows) {
     const ParameterValues parameters =
         read_formula_parameters(reader, kNamesOfTime, "formulas of time", problems);
-    if (gravity_changes) {
+    if (scene.gravity_changes) {
       fields.gravity = read_field(reader, "gravity_m_per_s2", space, parameters, problems);
     }
-    if (flows) fields.flow = read_field(reader, "flow_m_per_s", space, parameters, problems);
+    if (scene.medium_flows)
+      fields.flow = read_field(reader, "flow_m_per_s", space, parameters, problems);
   }
   fields.flow_place = reader.place_of("flow_m_per_s");
   reader.finish();

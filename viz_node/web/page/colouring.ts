@@ -42,7 +42,9 @@ export function stretchScale(widest: number, sinceS: number, palette: Palette): 
 
 /** A share as percent, two digits or more. */
 export function percentOf(share: number): string {
-  return `${(100 * share).toPrecision(2).replace(/e.*/, '')}${100 * share < 1e-6 ? ' · 10⁻⁶' : ''} %`;
+  const percent = 100 * share;
+  if (percent >= 9.95 || percent === 0) return `${Math.round(percent)} %`;
+  return `${percent >= 0.01 ? percent.toPrecision(2) : percent.toExponential(1)} %`;
 }
 
 export class ColouringBox {

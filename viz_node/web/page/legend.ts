@@ -36,7 +36,7 @@ export function legendOf(description: Description, view: SceneView, hasKeys: boo
   if (plain.length > 0) entries.push({ mark: 'surface', text: surfaceText(plain), colour: palette.surface });
   for (const { mark, name, wanted } of bodies.colouredFixed.slice(0, MOST_BODIES))
     entries.push({ mark, text: mark === 'surface' ? `surface: ${name}` : `${name}, fixed`, colour: readable(wanted, palette) });
-  if (colouring === 'bodies' || colouring === 'force' || colouring === 'components') entries.push(...linkEntries(view, palette.link_states));
+  if (colouring !== 'stretch') entries.push(...linkEntries(view, palette.link_states));
   return entries;
 }
 

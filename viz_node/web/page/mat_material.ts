@@ -7,7 +7,7 @@ import { MAT_FIXED } from './wire.ts';
 const SHOWN_FIXED_POINT = 3;
 const SHOWN_TOOL = 4;
 const SHOWN_NOTHING = 5;
-const SHOWN_RING = 6;
+export const SHOWN_RING = 6;
 
 /** Radius of the hole of a ring, a share of its own. */
 const RING_HOLE = 0.76;
@@ -54,7 +54,8 @@ const MAT_VERTEX = /* glsl */ `
     vec4 view_position = modelViewMatrix * vec4(drawn(position), 1.0);
     gl_Position = projectionMatrix * view_position;
     float pixels = pixels_per_unit / gl_Position.w;
-    size = max(radius_share * radius, min_pixels[k >= 4 ? 0 : k] / pixels);
+    float share = k == 6 ? 1.0 : radius_share; // what is held keeps its true size
+    size = max(share * radius, min_pixels[k >= 4 ? 0 : k] / pixels);
     // A square where a punctual MAT is fixed; a sphere with a halo where a hand is; a ring, as thimbles are, for what it holds.
     shape = k == 3 ? 1 : (k == 2 ? 2 : (k == 6 ? 3 : 0));
     centre = view_position.xyz;

@@ -1,13 +1,16 @@
-// viz_node/web/page/parameters.ts -- sliders for the parameters of liaisons and links.
+// viz_node/web/page/parameters.ts -- sliders for the parameters of liaisons, links and world.
 import type { Reply } from './protocol.ts';
 import { fillRows, press } from './rows.ts';
 
 const LINE = /^(\S+\.[^\s.]+) = (-?[\d.]+(?:e[+-]?\d+)?)$/;
 const DECADES = 1; // that a slider goes up and down from the first value that was seen
+const GRAVITY = '_m_per_s2';
+const LEAST_GRAVITY_SPAN = 20; // [m/s^2], either way
 const UNITS: [ending: string, unit: string][] = [
   ['_n_per_m', 'N/m'],
   ['_n_s_per_m', 'N s/m'],
   ['_m_per_s', 'm/s'],
+  [GRAVITY, 'm/s²'],
   ['_kg', 'kg'],
   ['_hz', 'Hz'],
   ['_n', 'N'],
@@ -19,6 +22,23 @@ interface Parameter {
   name: string;
   value: number;
   first: number; // the value in the middle of its slider
+}
+
+/** What a slider can do with a parameter: gravity goes from one direction to the other, what is above 0 by decades. */
+interface SliderScale {
+  min: number;
+  max: number;
+  placeOf: (value: number) => number;
+  valueOf: (place: number) => number;
+}
+
+function scaleOf(name: string, first: number): SliderScale | null {
+  if (name.endsWith(GRAVITY)) {
+    const span = Math.max(2 * Math.abs(first), LEAST_GRAVITY_SPAN);
+    return { min: -span, max: span, placeOf: (value) => value, valueOf: (place) => place };
+  }
+  if (first <= 0) return null;
+  return { min: -DECADES, max: DECADES, placeOf: (value) => (value > 0 ? Math.log10(value / first) : 0), valueOf: (place) => first * 10 ** place };
 }
 
 /** `finger.stiffness_n_per_m` in words: [finger stiffness, N/m]. */
@@ -84,23 +104,26 @@ export class ParameterPanel {
     fillRows(this.rows, this.list, () => this.makeRow(), (row, { name, value, first }) => {
       const [text, unit] = wordsOf(name);
       const [label, slider, number] = [...row.querySelectorAll<HTMLElement>('label, input')] as [HTMLLabelElement, HTMLInputElement, HTMLInputElement];
+      const scale = scaleOf(name, first);
       row.dataset.parameter = name;
       row.dataset.first = String(first);
       label.textContent = `${text}${unit === '' ? '' : ` [${unit}]`}`;
       row.title = name;
       number.id = label.htmlFor = `parameter-${name}`;
       slider.setAttribute('aria-label', `${name}, slider`);
-      slider.disabled = first <= 0;
+      slider.disabled = scale === null;
+      slider.min = String(scale?.min ?? 0);
+      slider.max = String(scale?.max ?? 0);
       if (document.activeElement !== number) number.value = String(value);
-      if (document.activeElement !== slider || !slider.matches(':active')) slider.value = String(first > 0 && value > 0 ? Math.log10(value / first) : 0);
+      if (document.activeElement !== slider || !slider.matches(':active')) slider.value = String(scale?.placeOf(value) ?? 0);
     });
   }
 
   private makeRow(): HTMLElement {
     const row = document.createElement('li');
-    const slider = Object.assign(document.createElement('input'), { type: 'range', min: String(-DECADES), max: String(DECADES), step: '0.01' });
+    const slider = Object.assign(document.createElement('input'), { type: 'range', step: '0.01' });
     const number = Object.assign(document.createElement('input'), { type: 'number', step: 'any' });
-    const valueOf = () => Number((Number(row.dataset.first) * 10 ** Number(slider.value)).toPrecision(3));
+    const valueOf = () => Number(scaleOf(row.dataset.parameter!, Number(row.dataset.first))!.valueOf(Number(slider.value)).toPrecision(3));
     slider.addEventListener('input', () => (number.value = String(valueOf())));
     slider.addEventListener('change', () => this.set(row.dataset.parameter!, valueOf()));
     number.addEventListener('change', () => number.value !== '' && this.set(row.dataset.parameter!, Number(number.value)));

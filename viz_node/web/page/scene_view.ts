@@ -10,7 +10,7 @@ import { GlCanvas, shapeOf, VertexArray, type Shape } from './gl_canvas.ts';
 import { Ground } from './ground.ts';
 import type { BondGroups, LinkGroups } from './link_groups.ts';
 import { LinkView } from './link_view.ts';
-import { matProgram, sceneUniforms, shownKinds } from './mat_material.ts';
+import { matProgram, sceneUniforms, SHOWN_RING, shownKinds } from './mat_material.ts';
 import { NetForces } from './net_forces.ts';
 import type { Frame, Surface, Topology } from './protocol.ts';
 import { Trails } from './trails.ts';
@@ -454,7 +454,8 @@ export class SceneView {
 
   /** Radius of MAT `index` as it is drawn, at the middle of the scene [CSS pixels]. */
   radiusOnScreen(index: number): number {
-    return (this.uniforms.radius_share * this.radii.array[index]!) / this.rig.metresPerPixel;
+    const share = this.matter.vertices.kind!.array[index] === SHOWN_RING ? 1 : this.uniforms.radius_share;
+    return (share * this.radii.array[index]!) / this.rig.metresPerPixel;
   }
 
   /** Colour of one pixel of the view as it is drawn now, 0..255. */
