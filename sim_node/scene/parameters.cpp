@@ -8,8 +8,8 @@
 
 #include "node/config/nearest_word.h"
 #include "sim_node/scene/language/formula.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/liaisons/liaison_reader.h"
-#include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "sim_node/scene/language/named_formula.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/language/quantity.h"
-#include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/language/point.h"
 
 namespace cordis::scene {
 

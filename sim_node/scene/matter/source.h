@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "node/config/mapping_reader.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/matter/matter.h"
-#include "sim_node/scene/matter/point.h"
 
 namespace cordis::scene {
 

@@ -12,8 +12,8 @@
 
 #include "node/config/nearest_word.h"
 #include "node/config/place_set.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/language/quantity.h"
-#include "sim_node/scene/matter/point.h"
 #include "sim_node/scene/sections/quantity_words.h"
 
 namespace cordis::scene {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "node/assert.h"
-#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/language/point.h"
 
 namespace cordis::scene {
 

@@ -10,7 +10,7 @@
 #include "node/config/name_hash.h"
 #include "node/config/place_set.h"
 #include "sim_node/scene/language/name.h"
-#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/matter/source.h"
 
 namespace cordis::scene {

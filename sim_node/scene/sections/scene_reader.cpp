@@ -7,7 +7,7 @@
 
 #include "node/config/file_kind.h"
 #include "node/config/yaml_reader.h"
-#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/sections/conditions.h"
 #include "sim_node/scene/sections/fields.h"
 #include "sim_node/scene/sections/links.h"

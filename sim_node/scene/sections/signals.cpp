@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim_node/scene/language/name.h"
-#include "sim_node/scene/matter/point.h"
+#include "sim_node/scene/language/point.h"
 #include "sim_node/scene/sections/quantity_words.h"
 
 namespace cordis::scene {

@@ -1,5 +1,5 @@
-// sim_node/scene/matter/point.cpp
-#include "sim_node/scene/matter/point.h"
+// sim_node/scene/language/point.cpp
+#include "sim_node/scene/language/point.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// sim_node/scene/matter/point.h -- points and directions as a scene writes them.
+// sim_node/scene/language/point.h -- points and directions as a scene writes them.
 #pragma once
 
 #include <string>
