@@ -6,7 +6,7 @@ import { pause, until } from '../viz/session.mjs';
 
 const MEASURED_MS = 8_000;
 const SCENE = ['--scene', 'grid', '--mats', '10000'];
-const COLOURINGS = ['bodies', 'speed', 'force', 'components', 'stretch'];
+const COLOURINGS = (process.env.CORDIS_COLOURINGS ?? 'bodies speed force components stretch').split(' ');
 
 /** Processor time of script, and of all work of the page's thread, for each frame drawn. The browser counts it. */
 async function perFrame(page, cdp) {

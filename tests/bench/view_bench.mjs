@@ -87,7 +87,7 @@ async function costOfATick() {
   writeFileSync(scene, `cordis: 1\nname: net\nspace: 3\nstep: {rate_hz: 1000, gesture_rate_hz: 1000}\nmatter:\n  ${matter}\n`);
   const file = join(session.folder, 'net_launch.yaml');
   writeFileSync(file, `cordis: 1\nsession: view_bench\ndomain: ${session.domain}\nclock: realtime\nnodes:\n  sim: {node: sim_node, scene: net.yaml, threads: 1}\n  view: {node: viz_node, port: 0}\n`);
-  const sim = session.start('sim', program('sim_node'), [file, '--node', 'sim']);
+  const sim = session.start('sim', program('sim_node'), [file, '--name', 'sim']);
   await pause(4000);
   const measure = async () => {
     const before = new Map(readdirSync(`/proc/${sim.id}/task`).map((thread) => [thread, processorTime(`/proc/${sim.id}/task/${thread}`)]));

@@ -19,6 +19,7 @@ export class LinkView {
   widest = 0; // largest stretch shown lately, a share
   private states: Uint8Array; // + LINK_IS_IDLE where a link does nothing
   private readonly lengths: Float32Array; // that stretches are counted from [m]
+  private readonly stretches: Float32Array; // in the newest frame, while they are shown
   private looks: Uniforms[] = []; // by key
   private colouring: Colouring = 'bodies';
   private isOld = true; // the parts, since the colouring or the palette changed
@@ -35,6 +36,7 @@ export class LinkView {
     this.states = new Uint8Array(linkCount);
     this.keys = new Uint8Array(linkCount);
     this.lengths = new Float32Array(linkCount);
+    this.stretches = new Float32Array(linkCount);
     this.components = new Components(matCount);
     const index = new VertexArray<Uint32Array>(new Uint32Array(2 * linkCount), 1);
     this.shape = shapeOf('lines', LINK_PROGRAM, vertices, { index, uniforms, isVisible: isDrawn });
@@ -90,19 +92,32 @@ export class LinkView {
   }
 
   private sortByStretch(positions: Float32Array): void {
-    const { states, keys } = this;
-    const stretches = new Float32Array(keys.length);
+    const { states, keys, stretches, lengths } = this;
+    const { linkEnds } = this.topology;
     let widest = 0;
+    // As stretchOf(), without a call for each link: there are many.
     for (let link = 0; link < keys.length; ++link) {
-      if (states[link]! >= LINK_IS_IDLE) continue;
-      stretches[link] = this.stretchOf(positions, link);
-      widest = Math.max(widest, Math.abs(stretches[link]!));
+      const before = lengths[link]!;
+      if (before === 0 || states[link]! >= LINK_IS_IDLE) {
+        stretches[link] = 0;
+        continue;
+      }
+      const a = 3 * linkEnds[2 * link]!;
+      const b = 3 * linkEnds[2 * link + 1]!;
+      const x = positions[a]! - positions[b]!;
+      const y = positions[a + 1]! - positions[b + 1]!;
+      const z = positions[a + 2]! - positions[b + 2]!;
+      const stretch = Math.sqrt(x * x + y * y + z * z) / before - 1;
+      stretches[link] = stretch;
+      if (stretch > widest) widest = stretch;
+      else if (-stretch > widest) widest = -stretch;
     }
     this.widest = Math.max(widest, FALL * this.widest);
     const colours = this.palette.stretches;
     const half = (colours.length - 1) / 2;
+    const scale = this.widest > 0 ? half / this.widest : 0;
     for (let link = 0; link < keys.length; ++link)
-      keys[link] = states[link]! >= LINK_IS_IDLE ? NOT_DRAWN : Math.round(half + (this.widest > 0 ? (half * stretches[link]!) / this.widest : 0));
+      keys[link] = states[link]! >= LINK_IS_IDLE ? NOT_DRAWN : Math.round(half + scale * stretches[link]!);
     if (this.isOld) this.looks = colours.map((colour) => linkUniforms(colour, 0));
     this.layOut();
   }

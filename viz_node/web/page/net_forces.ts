@@ -62,15 +62,15 @@ export class NetForces {
     if (three === null) return false;
     const [x0, x1, x2] = three.map(({ positions }) => positions) as [Float32Array, Float32Array, Float32Array];
     const [t0, t1, t2] = three.map(({ timeS }) => timeS) as [number, number, number];
-    const [h1, h2] = [t1 - t0, t2 - t1];
-    for (let mat = 0; mat < sizes.length; ++mat) {
-      const mass = this.masses[mat] ?? 0;
-      let square = 0;
-      for (let place = 3 * mat; place < 3 * mat + 3; ++place) {
-        const change = (x2[place]! - x1[place]!) / h2 - (x1[place]! - x0[place]!) / h1;
-        square += change * change;
-      }
-      sizes[mat] = mass === 0 ? Number.NaN : (2 * mass * Math.sqrt(square)) / (t2 - t0);
+    const { masses } = this;
+    const [before, after, factor] = [1 / (t1 - t0), 1 / (t2 - t1), 2 / (t2 - t0)];
+    for (let mat = 0, place = 0; mat < sizes.length; ++mat, place += 3) {
+      const mass = masses[mat] ?? 0;
+      const [middleX, middleY, middleZ] = [x1[place]!, x1[place + 1]!, x1[place + 2]!];
+      const x = (x2[place]! - middleX) * after - (middleX - x0[place]!) * before;
+      const y = (x2[place + 1]! - middleY) * after - (middleY - x0[place + 1]!) * before;
+      const z = (x2[place + 2]! - middleZ) * after - (middleZ - x0[place + 2]!) * before;
+      sizes[mat] = mass === 0 ? Number.NaN : factor * mass * Math.sqrt(x * x + y * y + z * z);
     }
     return true;
   }

@@ -383,10 +383,14 @@ export class SceneView {
     let largest = FALL * this.strongest;
     for (let mat = 0; mat < sizes.length; ++mat) if (kinds[mat] === 0 && sizes[mat]! > largest) largest = sizes[mat]!;
     this.strongest = largest;
-    for (let mat = 0; mat < sizes.length; ++mat) {
+    const { forceRamp } = this;
+    const scale = largest > 0 ? (FORCE_COLOURS - 1) / largest : 0;
+    for (let mat = 0, place = 0; mat < sizes.length; ++mat, place += 3) {
       if (kinds[mat] !== 0 || Number.isNaN(sizes[mat]!)) continue;
-      const colour = 3 * Math.round(largest > 0 ? ((FORCE_COLOURS - 1) * sizes[mat]!) / largest : 0);
-      for (let k = 0; k < 3; ++k) tints[3 * mat + k] = this.forceRamp[colour + k]!;
+      const colour = 3 * Math.round(scale * sizes[mat]!);
+      tints[place] = forceRamp[colour]!;
+      tints[place + 1] = forceRamp[colour + 1]!;
+      tints[place + 2] = forceRamp[colour + 2]!;
     }
     this.tints.set();
   }
