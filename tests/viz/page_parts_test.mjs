@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colouring', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
+  const names = ['net_forces', 'colouring', 'format', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf, percentOf } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf, percentOf, withUnit, joined } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -217,6 +217,17 @@ const cases = {
       assert.ok(Math.abs(Number.parseFloat(text) / (100 * share) - 1) <= 0.0501, `${text} of ${share}`);
     }
     assert.deepEqual([0, 0.005, 0.1, 0.26, 2.6].map(percentOf), ['0 %', '0.50 %', '10 %', '26 %', '260 %']);
+  },
+
+  'a value with its unit is read again, and what is next to nothing has no sign': () => {
+    const factors = { G: 1e9, M: 1e6, k: 1e3, m: 1e-3, µ: 1e-6, n: 1e-9 };
+    const random = lot(7);
+    for (let run = 0; run < RUNS; ++run) {
+      const value = (random() < 0.5 ? -1 : 1) * 10 ** (18 * random() - 8);
+      const [, number, letter] = /^(-?[\d.]+)\u202f([GMkmµn]?)N$/.exec(joined(withUnit(value, 'N')));
+      assert.ok(Math.abs((Number(number) * (factors[letter] ?? 1)) / value - 1) <= 0.00501, `${number} ${letter} of ${value}`);
+    }
+    assert.deepEqual([-1e-13, 0, -0, 1e-13].map((value) => withUnit(value, 'm')[0]), ['0.00', '0.00', '0.00', '0.00']);
   },
 
   'a key is as wide as its pitch, across its way': () => {

@@ -22,7 +22,8 @@ export function prefixOf(size: number): [number, string] {
 /** Three significant digits, no exponent: for a number between 0.1 and 9999. */
 export function threeDigits(value: number): string {
   const size = Math.abs(value);
-  return value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  const text = value.toFixed(size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+  return Number(text) === 0 ? text.replace('-', '') : text;
 }
 
 /** [number, unit] with a prefix: 0.0123, "m" gives ["12.3", "mm"]. */
