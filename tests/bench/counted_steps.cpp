@@ -1,7 +1,7 @@
 // tests/bench/counted_steps.cpp -- steps of some scenes, whose instructions callgrind counts.
 //
 // usage: counted_steps, under instruction_counts_test.sh; prints the compiler, then a line for each call of
-// cordis_counted_steps(): instruction set, scene, and steps times elements.
+// cordis_counted_steps(): instruction set, scene, and steps times elements. Lines with `each:` are of one step.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -15,10 +15,11 @@
 #include "tests/bench/bench_scenes.h"
 
 constexpr int kCountedSteps = 40;
+constexpr int kSingleSteps = 100;  // several lists of neighbours are made in them
 
 /// Callgrind knows it by this name.
-extern "C" [[gnu::noinline]] void cordis_counted_steps(cordis::engine::World& world) {
-  for (int n = 0; n < kCountedSteps; ++n) world.step();
+extern "C" [[gnu::noipa]] void cordis_counted_steps(cordis::engine::World& world, int count) {
+  for (int n = 0; n < count; ++n) world.step();
 }
 
 namespace {
@@ -44,7 +45,7 @@ Shared shuffled_net() {
   return std::make_shared<const Network>(net);
 }
 
-Shared string_in_1d() {
+NetworkDescription string_of_masses() {
   NetworkDescription string;
   string.dimension = 1;
   string.step = 1e-3;
@@ -54,7 +55,23 @@ Shared string_in_1d() {
     mat.position.x() = i == 7 ? 0.001 : 0.0;
     if (i > 0) string.links.push_back({i - 1, i, 100.0, 0.01, 0.0});
   }
-  return std::make_shared<const Network>(string);
+  return string;
+}
+
+Shared string_in_1d() {
+  return std::make_shared<const Network>(string_of_masses());
+}
+
+Shared by_leapfrog(NetworkDescription network) {
+  network.integrator = cordis::engine::IntegratorKind::kLeapfrog;
+  return std::make_shared<const Network>(network);
+}
+
+/// Dampers that are solved implicitly.
+Shared heavy_string() {
+  NetworkDescription string = string_of_masses();
+  for (cordis::engine::Link& link : string.links) link.viscosity = 100.0;
+  return by_leapfrog(string);
 }
 
 Shared net_of(cordis::bench::LinkKind kind) {
@@ -71,6 +88,9 @@ const std::vector<Scene>& scenes() {
       {"net_in_runs", net_in_runs},
       {"shuffled_net", shuffled_net},
       {"string_in_1d", string_in_1d},
+      {"leapfrog_net", [] { return by_leapfrog(cordis::cli::square_net(3, kSide)); }},
+      {"leapfrog_string", [] { return by_leapfrog(string_of_masses()); }},
+      {"heavy_string", heavy_string},
       {"links_with_states", [] { return net_of(cordis::bench::kConditions); }},
       {"links_with_expressions", [] { return net_of(cordis::bench::kExpression); }},
       {"melt", [] { return cordis::bench::melt(5); }},
@@ -82,11 +102,21 @@ void count(const Scene& scene, VectorWidth width) {
   const Shared network = scene.network();
   World world(network, width);
   for (int n = 0; n < kStepsBefore; ++n) world.step();
-  cordis_counted_steps(world);
+  cordis_counted_steps(world, kCountedSteps);
   const NetworkDescription& description = network->description();
   const std::size_t links = description.links.size() + description.state_links.size();
   std::printf("%s %s %zu\n", to_string(width), scene.name,
               (links > 0 ? links : network->mat_count()) * kCountedSteps);
+}
+
+/// Lists of neighbours are made in slices, so that no step takes much longer than the others.
+void count_each(VectorWidth width) {
+  World world(cordis::bench::melt(7), width);
+  for (int n = 0; n < kStepsBefore; ++n) world.step();
+  for (int n = 0; n < kSingleSteps; ++n) {
+    cordis_counted_steps(world, 1);
+    std::printf("%s each:melt %zu\n", to_string(width), world.network().mat_count());
+  }
 }
 
 }  // namespace
@@ -100,5 +130,6 @@ int main() {
   for (const VectorWidth width : cordis::engine::supported_vector_widths()) {
     if (width == VectorWidth::kAvx512) continue;  // callgrind does not know it
     for (const Scene& scene : scenes()) count(scene, width);
+    count_each(width);
   }
 }
