@@ -19,6 +19,14 @@ void settle(scene::Scene& scene, config::Problems& problems) {
                    "a higher rate_hz may hold it");
     return;
   }
+  if (rest.is_rounding) {
+    problems.error(
+        asked.place,
+        "the scene comes no nearer to rest than " + short_text(rest.force) + " N, which pull " +
+            scene::call_mat(scene, rest.pulled).name,
+        "positions are rounded: write an until_n of " + short_text(4.0 * rest.force) + " or more");
+    return;
+  }
   if (!(rest.force < asked.until)) {
     problems.error(asked.place,
                    "the scene has not come to rest in " + config::count_text(rest.steps, "step") +

@@ -1,6 +1,8 @@
 // sim_node/plan/settle.cpp
 #include "sim_node/plan/settle.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -144,11 +146,25 @@ class Rest {
 
 /// At the step of the network, from its start.
 Settled try_to_settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+  constexpr int kMaxHolds = 200;      // without less force; what still falls takes below 40
+  constexpr double kLess = 0.99;      // of the least so far
+  constexpr double kRounding = 1e-8;  // of the largest so far
   Rest rest(network);
+  double largest = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  int holds = 0;
   for (;;) {
     rest.hold();
     Settled pose = rest.pose();
     if (!pose.is_finite || pose.force < until || rest.steps() >= max_steps) return pose;
+    largest = std::max(largest, pose.force);
+    ++holds;
+    if (pose.force < kLess * least) {
+      least = pose.force;
+      holds = 0;
+    }
+    pose.is_rounding = holds > kMaxHolds && pose.force < kRounding * largest;
+    if (pose.is_rounding) return pose;
     double before = 0.0;
     for (double now = rest.kinetic_energy(); now >= before && rest.steps() < max_steps;
          now = rest.kinetic_energy()) {

@@ -15,6 +15,7 @@ struct Settled {
   std::uint32_t pulled = 0;            ///< the mass that has it
   std::uint64_t steps = 0;             ///< number of computed steps
   bool is_finite = true;               ///< false: it diverged; the rest says nothing then
+  bool is_rounding = false;            ///< what pulls falls no more, and is rounding
 };
 
 /// Lets a network come to rest from its start, without dampers, medium and velocities. It moves by
@@ -22,7 +23,7 @@ struct Settled {
 /// energy falls (kinetic damping). Each liaison stays in its state of the start, without friction; a
 /// Maxwell element keeps its start force. Ports and what is driven stay, and driven forces are those
 /// of the start. The same bits on every vector width.
-/// @param until  it ends once no mass is pulled by more [N]
+/// @param until  it ends once no mass is pulled by more [N], or only by rounding
 /// @param max_steps  it ends after so many of all lengths, settled or not
 Settled settle(const engine::NetworkDescription& network, double until, std::uint64_t max_steps);
 

@@ -256,6 +256,16 @@ TEST(Settle, TakesAShorterStepWhereThatOfImplicitIsTooLong) {
   }
 }
 
+TEST(Settle, EndsWhereRoundingIsAllThatPulls) {
+  const Settled rest = settle(chain(200, true), 1e-13, 2'000'000);
+
+  EXPECT_TRUE(rest.is_rounding);
+  EXPECT_GT(rest.force, 1e-13);
+  EXPECT_LT(rest.force, 1e-10);
+  EXPECT_LT(rest.steps, 400'000u);
+  EXPECT_FALSE(settle(chain(200, true), 1e-10, 2'000'000).is_rounding);
+}
+
 TEST(Settle, EndsWithWhatFallsForever) {
   NetworkDescription network = chain(3, false);
   network.links.pop_back();

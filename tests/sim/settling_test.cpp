@@ -63,6 +63,16 @@ settle: {until_n: 1.0e-9, steps: 50}
   hint: hold what falls or slides, or write a larger until_n or steps)");
 }
 
+TEST(Settling, TellsWhatRoundingKeepsFromRest) {
+  config::Problems problems;
+  scene_at_rest(chain("settle: {until_n: 1.0e-19}"), problems);
+
+  EXPECT_NE(problems.text().find("the scene comes no nearer to rest than "), std::string::npos)
+      << problems.text();
+  EXPECT_NE(problems.text().find("hint: positions are rounded: write an until_n of "),
+            std::string::npos);
+}
+
 TEST(Settling, ReadsItsKeys) {
   config::Problems problems;
   scene_at_rest(chain("settle: {until_n: 0, steps: 0, until: 3}"), problems);
