@@ -142,6 +142,29 @@ TEST(Drive, PushesAFreeMassAsNewtonSays) {
   EXPECT_LT(std::abs(world.energy().residual()), 1e-12 * world.energy().largest);
 }
 
+TEST(Drive, BringsNothingBeforeTheStart) {
+  for (const auto integrator : {IntegratorKind::kLeapfrog, IntegratorKind::kImplicit}) {
+    // a mass that moves is pushed with 3 N, and a piston with 1 m/s goes on
+    NetworkDescription scene = oscillator(0.2, 50.0, 0.0, 0.1, 1.0, 1e-3);
+    scene.integrator = integrator;
+    scene.time_functions = {table({0.0, 1.0}, {3.0, 3.0}, false),
+                            table({0.0, 1.0}, {0.0, 1.0}, false)};
+    scene.drives = {{1, 0, true, Vec3::Zero()}};
+    scene.mats.push_back(port(Vec3(-0.5, 0, 0)));
+    scene.drives.push_back({2, 1, false, scene.mats[2].position});
+    scene.links.push_back({2, 1, 20.0, 0.0, 0.0});
+    World world = make_world(scene);
+    const Vec3 start = world.position(1);
+    world.step();
+    EXPECT_EQ(world.energy().port_work, 0.0);
+    const Vec3 next = world.position(1);
+    world.step();
+    const double tension = 20.0 * (0.5 + 0.5 * (start.x() + next.x()) - 0.0005);
+    const double work = 3.0 * (next - start).x() - tension * 1e-3;
+    EXPECT_NEAR(world.energy().port_work, work, 1e-12);
+  }
+}
+
 TEST(Drive, OfAPistonBringsWhatTheSpringStores) {
   for (const bool smooth : {false, true}) {
     NetworkDescription scene = oscillator(0.1, 500.0, 0.0, 0.0, 0.0, 1e-3);

@@ -172,10 +172,11 @@ double PortInputs::move_ports(MatArray& mats) noexcept {
   return work;
 }
 
-double PortInputs::work_at_ports(const MatArray& mats) noexcept {
+double PortInputs::work_at_ports(const MatArray& mats, bool at_start) noexcept {
   double work = 0.0;
   for (Port& port : ports_) {
     port.link_force = mats.force(port.mat);
+    if (at_start && port.drive != nullptr) continue;
     work -= 0.5 * port.link_force.dot(mats.position(port.mat) - mats.delayed(port.mat));
   }
   return work;

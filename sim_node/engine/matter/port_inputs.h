@@ -59,8 +59,9 @@ class PortInputs {
   /// Moves the ports that nothing drives. @return work [J] the last forces of their links took from the outside on the
   /// way, half of it.
   [[nodiscard]] double move_ports(MatArray& mats) noexcept;
+  /// @param at_start  nothing has been driven yet
   /// @return the other half, with the forces of the links at the new positions.
-  [[nodiscard]] double work_at_ports(const MatArray& mats) noexcept;
+  [[nodiscard]] double work_at_ports(const MatArray& mats, bool at_start = false) noexcept;
 
   /// Adds the held forces to those of the links. @return half of their work [J] over the last
   /// period.
