@@ -226,6 +226,12 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
       "its K' varies by and the K' of that is above 1, or 0.6 where that has K' above 2"};
 }
 
+double swing_of(engine::IntegratorKind integrator, double part) noexcept {
+  if (integrator == engine::IntegratorKind::kSymplectic4) return 1.06;
+  const double most = integrator == engine::IntegratorKind::kImplicit ? part : part * part;
+  return most < 1.0 ? 1.0 / (1.0 - most) : std::numeric_limits<double>::infinity();
+}
+
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
   Stability stability;
   if (network.integrator == engine::IntegratorKind::kModal) {
@@ -236,6 +242,9 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   }
   stability.bounded = graph.bounded;
   stability.turning = graph.turning;
+  // Elsewhere a link turns about by more than it has room for.
+  if (network.dimension == 1)
+    stability.turning.swing(swing_of(network.integrator, network.step / stability.certified.step));
   stability.step = network.step;
   stability.sets = partner_limits(network, graph, stability.holds());
   stability.uncertainty = uncertainty_of(network, graph);

@@ -45,6 +45,10 @@ struct Stability {
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph);
 
+/// How many times its energy that of an oscillation swings up to, at this part of the longest step. The links
+/// of `implicit` are those with states, and `symplectic4` is certified up to where it swings no farther.
+double swing_of(engine::IntegratorKind integrator, double part) noexcept;
+
 /// Stability::uncertainty alone, without the two limits. O(liaisons).
 std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
                                           const LiaisonGraph& graph);

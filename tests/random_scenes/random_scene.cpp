@@ -28,7 +28,9 @@ class SceneWriter {
         random_of_bends_(seed ^ 0x9e3779b9U),
         random_of_polylines_(seed ^ 0x85ebca6bU),
         random_of_lively_laws_(seed ^ 0x7feb352dU),
-        random_of_crowds_(seed ^ 0xd6e8feb8U) {
+        random_of_crowds_(seed ^ 0xd6e8feb8U),
+        random_of_fields_(seed ^ 0xc2b2ae35U),
+        random_of_bodies_(seed ^ 0x165667b1U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -50,6 +52,7 @@ class SceneWriter {
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
+    if (matter_ != Matter::kModes) perhaps_add_body();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
   lively: {quantity: kinetic_energy}
@@ -103,17 +106,40 @@ step: {{rate_hz: {}, integrator: {}{}}}
 
   std::string world() {
     std::string text;
+    const bool may_change = matter_ == Matter::kAnything && !freezes_;
     if (matter_ != Matter::kModes && chance(0.3)) {
       text = "gravity_m_per_s2: [";
       for (int axis = 0; axis < space_; ++axis)
         text += fmt::format("{}{}", axis > 0 ? ", " : "", axis == space_ - 1 ? -9.81 : 0.0);
       text += "]";
     }
+    if (may_change && field_between(0.0, 1.0) < 0.1) text = "gravity_m_per_s2: " + field(10.0);
     if (matter_ == Matter::kAnything && chance(0.2)) {
       text += fmt::format("{}viscosity_n_s_per_m: {:.4g}", text.empty() ? "" : ", ",
                           decades(1e-4, 0.3));
+      if (may_change && field_between(0.0, 1.0) < 0.4 && !has_no_medium_)
+        text += ", flow_m_per_s: " + field(1.0);
     }
     return text.empty() ? "" : "world: {" + text + "}\n";
+  }
+
+  double field_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_fields_()) / 4294967296.0;
+  }
+
+  /// Numbers or formulas of time for each axis, up to this size.
+  std::string field(double size) {
+    std::string text = "[";
+    for (int axis = 0; axis < space_; ++axis) {
+      const double middle = field_between(-size, size);
+      const double swing = field_between(-size, size);
+      const double rate = field_between(2.0, 80.0);
+      text += axis > 0 ? ", " : "";
+      text += field_between(0.0, 1.0) < 0.3
+                  ? fmt::format("{:.4g}", middle)
+                  : fmt::format("\"{:.4g} + {:.4g} * sin({:.4g} * time_s)\"", middle, swing, rate);
+    }
+    return text + "]";
   }
 
   void write_masses() {
@@ -184,8 +210,9 @@ step: {{rate_hz: {}, integrator: {}{}}}
     const double choice = medium_between(0.0, 1.0);
     const double viscosity = 1e-4 * std::pow(3000.0, medium_between(0.0, 1.0));
     if (choice > 0.2) return;
+    has_no_medium_ = choice < 0.03;
     masses_.insert(masses_.size() - 2, fmt::format(", medium_viscosity_n_s_per_m: {:.4g}",
-                                                   choice < 0.03 ? 0.0 : viscosity));
+                                                   has_no_medium_ ? 0.0 : viscosity));
   }
 
   /// A tenth of the bodies has a port at its centre of mass.
@@ -718,6 +745,79 @@ step: {{rate_hz: {}, integrator: {}{}}}
         "  - {{liaison: of_crowd, within: crowd, rest_m: {:.4g}, range_m: 100}}\n", rest);
   }
 
+  double body_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_bodies_()) / 4294967296.0;
+  }
+
+  /// A point away from the masses, shifted along the first axis, or nothing in 1 dimension.
+  std::string body_point(const char* key, double shift) {
+    if (space_ == 1) return {};
+    std::string text =
+        fmt::format(", {}: [{:.4g}, {:.4g}", key, 0.2 + shift, body_between(0.0, 0.1));
+    if (space_ > 2) text += fmt::format(", {:.4g}", body_between(0.0, 0.1));
+    return text + "]";
+  }
+
+  /// In a tenth of the scenes a string, a net, a crystal, a beam, a skin or a pack of balls, of up to 27 MATs, that
+  /// touches the masses or hangs on one.
+  void perhaps_add_body() {
+    const double choice = body_between(0.0, 1.0);
+    if (choice > 0.1) return;
+    const auto chosen = [this](double low, double high) {
+      return low * std::pow(high / low, body_between(0.0, 1.0));
+    };
+    std::string links = fmt::format(", stiffness_n_per_m: {:.4g}", chosen(5.0, 3000.0));
+    const double viscosity = chosen(1e-4, 1.0);
+    if (matter_ == Matter::kAnything && body_between(0.0, 1.0) < 0.6)
+      links += fmt::format(", viscosity_n_s_per_m: {:.4g}", viscosity);
+    const double mass = chosen(0.001, 0.05);
+    const std::string punctual = fmt::format(", mass_kg: {:.4g}", mass);
+    const auto count = static_cast<int>(body_between(3.0, 8.0));
+    const double spacing = body_between(0.02, 0.05);
+    const auto kind = random_of_bodies_() % (space_ == 1 ? 1 : 5);
+    std::string body;
+    if (kind == 0) {
+      body = fmt::format("kind: string, count: {}{}{}, ends: {}", count, body_point("from_m", 0.0),
+                         body_point("to_m", 0.2), body_between(0.0, 1.0) < 0.5 ? "free" : "fixed");
+    } else if (kind == 1) {
+      body = space_ == 3 ? fmt::format("kind: grid, rows: 3, columns: {}, spacing_m: {:.4g}{}",
+                                       count, spacing, body_point("corner_m", 0.0))
+                         : fmt::format("kind: ring, count: {}, radius_m: {:.4g}{}", count, spacing,
+                                       body_point("center_m", 0.0));
+    } else if (kind == 2) {
+      body = fmt::format("kind: lattice, structure: {}, spacing_m: {:.4g}, counts: {}{}",
+                         space_ == 3 ? "cubic" : "triangular", spacing,
+                         space_ == 3 ? "[3, 2, 2]" : "[3, 3]", body_point("corner_m", 0.0));
+    } else if (kind == 3) {
+      body = fmt::format("kind: beam, cells: {}{}{}, height_m: {:.4g}", count,
+                         body_point("from_m", 0.0), body_point("to_m", 0.3), spacing);
+      if (space_ == 3) body += fmt::format(", width_m: {:.4g}", spacing);
+    } else {
+      const std::string center = body_point("center_m", 0.0);
+      masses_ += fmt::format(
+          "  more: {{kind: pack, ball: {{mass_kg: {:.4g}, radius_m: 0.01}}, region: {{{}, "
+          "radius_m: "
+          "0.05}}, count: {}, seed: 1}}\n",
+          mass, center.substr(2), count);
+      links.clear();
+    }
+    if (!links.empty()) masses_ += "  more: {" + body + punctual + links + "}\n";
+    liaisons_ +=
+        fmt::format("  of_body: {{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}\n",
+                    chosen(5.0, 3000.0));
+    if (body_between(0.0, 1.0) < 0.5) {
+      links_ += fmt::format(
+          "  - {{liaison: of_body, between_sets: [p, more], rest_m: {:.4g}, range_m: {:.4g}}}\n",
+          0.05, 0.05);
+    } else {
+      links_ += fmt::format(
+          "  - {{liaison: of_body, between: [\"p[0]\", \"more[1]\"], rest_m: {:.4g}}}\n",
+          body_between(0.05, 0.3));
+    }
+    if (links.empty())
+      links_ += "  - {liaison: of_body, within: more, rest: radii, range_m: 0.02}\n";
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -850,8 +950,11 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_polylines_;  // likewise
   std::mt19937 random_of_lively_laws_;  // likewise
   std::mt19937 random_of_crowds_;       // likewise
+  std::mt19937 random_of_fields_;       // likewise
+  std::mt19937 random_of_bodies_;       // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
+  bool has_no_medium_ = false;  // its masses
   int space_ = 3;
   Matter matter_ = Matter::kAnything;
   std::uint32_t count_ = 1;

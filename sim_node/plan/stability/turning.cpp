@@ -108,9 +108,16 @@ void add_turning(LiaisonId liaison, double energy, const Reach& reach, Turning& 
   if (std::isinf(energy) || (reach.mass_a.high == 0.0 && reach.mass_b.high == 0.0)) return;
   turning.energy = std::min(turning.energy, energy);
   const double share = energy > 0.0 ? energy_at(reach) / energy : kNever;
-  if (share < std::max(turning.share, 1.0)) return;
+  if (turning.weakest && share < turning.share) return;
   turning.share = share;
-  turning.liaison = liaison;
+  turning.weakest = liaison;
+  if (share >= 1.0) turning.liaison = liaison;
+}
+
+void Turning::swing(double times) noexcept {
+  energy /= times;
+  share *= times;
+  if (share >= 1.0) liaison = weakest;
 }
 
 Turning turning_of(const NetworkDescription& network, const Reach& reach) {

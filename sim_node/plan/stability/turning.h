@@ -21,7 +21,11 @@ struct Turning {
   /// A link that the energy of the reach may press so far, the one with the most to spare; none: there
   /// is none.
   std::optional<engine::LiaisonId> liaison;
-  double share = 0.0;  ///< energy of the reach over what that one takes
+  double share = 0.0;                        ///< energy of the reach over what that one takes
+  std::optional<engine::LiaisonId> weakest;  ///< the one of `share`, whatever that is
+
+  /// Counts with an energy that swings up to this times what it should be.
+  void swing(double times) noexcept;
 };
 
 /// Where a state of a liaison is followed: inwards, to where its direction turns about.
