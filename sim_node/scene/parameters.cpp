@@ -287,7 +287,8 @@ Outcome Parameters::set_of_world(const std::string& parameter, double value) {
     if (axis != axes.end()) return refused("gravity follows a formula of time in this scene");
     if (parameter == kMediumViscosity)
       return refused("the medium flows, so its viscosity keeps its value while a run goes on");
-    return unknown_parameter(kWorld, parameter, words);
+    return refused("'" + std::string(kWorld) + "' has no parameter '" + parameter + "'",
+                   "it has " + listed(words));
   }
   if (axis == axes.end() && value < 0.0) return refused("'" + parameter + "' must be >= 0");
   if (std::abs(value) > kFarthest) return refused("'" + parameter + "' must be within 1e6");

@@ -104,5 +104,17 @@ TEST(Chronogram, FitsIntoItsFigure) {
   }
 }
 
+TEST(Chronogram, SaysWhatItsColoursCountFrom) {
+  const Recording recording = record("jelly_on_stairs", 1.0, 0.12, 4);
+  const std::string stretch = svg_of(recording, {.colour_by = ColourBy::kStretch});
+  EXPECT_NE(stretch.find("against that at 1.00 s"), std::string::npos);
+  const std::string force = svg_of(recording, {.colour_by = ColourBy::kForce});
+  EXPECT_NE(force.find("mean over 240 ms"), std::string::npos);
+  Recording few = recording;
+  few.frames.resize(2);
+  const std::string none = svg_of(few, {.colour_by = ColourBy::kForce});
+  EXPECT_NE(none.find("from the third frame on"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cordis::viz

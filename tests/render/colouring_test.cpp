@@ -75,6 +75,22 @@ TEST(Colouring, OfForceWaitsForThreeFrames) {
   EXPECT_EQ(forces.scale()->caption, "net force on free masses, mean over 1 s");
 }
 
+TEST(Colouring, StaysWhereAFrameComesAgain) {
+  for (const ColourBy what : {ColourBy::kSpeed, ColourBy::kForce, ColourBy::kStretch}) {
+    Colouring one = colouring(what);
+    one.take(frame(0.0, {0, 1, 2}));
+    one.take(frame(0.5, {0, 1, 2}));
+    one.take(frame(1.0, {0, 1, 3}));
+    const std::string high = one.scale()->high;
+    const std::optional<Colour> mass = one.of_mass(2);
+    const std::optional<Colour> link = one.of_link(1);
+    for (int repeat = 0; repeat < 5; ++repeat) one.take(frame(1.0, {0, 1, 3}));
+    EXPECT_EQ(one.scale()->high, high);
+    EXPECT_EQ(one.of_mass(2), mass);
+    EXPECT_EQ(one.of_link(1), link);
+  }
+}
+
 TEST(Colouring, OfComponentsFollowsLinksThatBreak) {
   constexpr std::uint8_t kBroken = 1 + msg::LINK_IS_IDLE;
   Colouring components = colouring(ColourBy::kComponents);

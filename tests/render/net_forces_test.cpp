@@ -37,6 +37,17 @@ TEST(NetForces, OfAFallAreTheWeightWhateverTheFramesAreApart) {
   }
 }
 
+TEST(NetForces, StayWhereAFrameComesAgain) {
+  NetForces forces;
+  for (int n = 0; n < 6; ++n) {
+    for (int repeat = 0; repeat < 1 + n % 3; ++repeat) forces.append(falling(0.04 * n));
+  }
+  const std::vector<double> sizes = forces.sizes({2.0f, 3.0f});
+  ASSERT_EQ(sizes.size(), 2u);
+  EXPECT_NEAR(sizes[0], 2.0 * 9.81, 0.02 * 9.81);
+  EXPECT_NEAR(forces.span_s(), 0.08, 1e-12);
+}
+
 TEST(NetForces, BeginAgainWhereTimeDoes) {
   NetForces forces;
   for (int n = 0; n < 5; ++n) forces.append(falling(0.04 * n));

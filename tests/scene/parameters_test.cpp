@@ -145,6 +145,7 @@ TEST_F(ParametersOfAScene, OfTheWorldAreEachAxisOfGravityAndTheMedium) {
 
   after("world", "gravity_z_m_per_s2", 1.0);
   EXPECT_EQ(problem, "'world' has no parameter 'gravity_z_m_per_s2'");
+  EXPECT_EQ(hint, "it has gravity_x_m_per_s2, gravity_y_m_per_s2, viscosity_n_s_per_m");
   after("world", "viscosity_n_s_per_m", -1.0);
   EXPECT_EQ(problem, "'viscosity_n_s_per_m' must be >= 0");
   after("world", "gravity_x_m_per_s2", 2e6);

@@ -109,7 +109,6 @@ void Chronogram::draw(Canvas& canvas) {
   canvas.text({side, 28.0 * unit_, 0.0}, 18.0 * unit_, Anchor::kStart, palette.text, name_);
   canvas.text({options_.width - side, 28.0 * unit_, 0.0}, 14.0 * unit_, Anchor::kEnd, palette.quiet,
               interval_text());
-  draw_scale(canvas, painter_, {0.5 * options_.width, 28.0 * unit_, 0.0}, 12.0 * unit_);
   const bool is_overlay = options_.layout == ChronogramLayout::kOverlay;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const std::size_t cell = is_overlay ? 0 : i;
@@ -132,6 +131,7 @@ void Chronogram::draw(Canvas& canvas) {
     canvas.text({area.x + 0.5 * area.width, area.y + area.height + 18.0 * unit_, 0.0}, 14.0 * unit_,
                 Anchor::kMiddle, palette.text, short_text(frames_[i].simulated_s(), 3) + " s");
   }
+  draw_scale(canvas, painter_, {0.5 * options_.width, 28.0 * unit_, 0.0}, 12.0 * unit_);
   const double foot = height_ - 14.0 * unit_;
   const ViewCamera camera(preset_, painter_.is_flat(), box_, first_.width, first_.height);
   draw_ruler(canvas, palette, camera.metres_per_pixel(), {side, foot, 0.0}, 13.0 * unit_,

@@ -62,18 +62,14 @@ void Colouring::find_scale(const std::vector<msg::SceneFrame>& frames) {
 }
 
 void Colouring::take(const msg::SceneFrame& frame) {
-  switch (what_) {
-    case ColourBy::kBody:
-      return;
-    case ColourBy::kSpeed:
-      return find_speeds(frame);
-    case ColourBy::kForce:
-      return find_forces(frame);
-    case ColourBy::kComponents:
-      return find_components(frame);
-    case ColourBy::kStretch:
-      return find_stretches(frame);
+  // A film shows a frame again where it has none of its own. Links may be put into states then.
+  if (last_s_ != frame.simulated_s()) {
+    if (what_ == ColourBy::kSpeed) find_speeds(frame);
+    if (what_ == ColourBy::kForce) find_forces(frame);
+    if (what_ == ColourBy::kStretch) find_stretches(frame);
   }
+  if (what_ == ColourBy::kComponents) find_components(frame);
+  last_s_ = frame.simulated_s();
 }
 
 void Colouring::enter(double largest) noexcept {
@@ -82,7 +78,7 @@ void Colouring::enter(double largest) noexcept {
 
 void Colouring::find_speeds(const msg::SceneFrame& frame) {
   const std::vector<float>& now = frame.position_m();
-  const double elapsed_s = frame.simulated_s() - before_s_;
+  const double elapsed_s = last_s_ ? frame.simulated_s() - *last_s_ : 0.0;
   if (before_.size() == now.size() && elapsed_s > 0.0) {
     values_.resize(is_free_.size());
     double largest = 0.0;
@@ -93,7 +89,6 @@ void Colouring::find_speeds(const msg::SceneFrame& frame) {
     enter(largest);
   }
   before_ = now;
-  before_s_ = frame.simulated_s();
 }
 
 void Colouring::find_forces(const msg::SceneFrame& frame) {
@@ -167,9 +162,9 @@ std::optional<ColourScale> Colouring::scale() const {
       return ColourScale{"0", with_unit(full_, "m/s"), "speed, mean over a frame", palette_.speeds};
     case ColourBy::kForce: {
       const double span_s = forces_.span_s();
-      return ColourScale{"0", with_unit(full_, "N"),
-                         "net force on free masses" +
-                             (span_s > 0.0 ? ", mean over " + with_unit(span_s, "s") : ""),
+      const std::string since =
+          span_s > 0.0 ? ", mean over " + with_unit(span_s, "s") : ", from the third frame on";
+      return ColourScale{"0", with_unit(full_, "N"), "net force on free masses" + since,
                          palette_.speeds};
     }
     case ColourBy::kStretch: {

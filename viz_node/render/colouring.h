@@ -40,7 +40,8 @@ class Colouring {
 
   /// Finds one scale for all of these frames, which are drawn afterwards.
   void find_scale(const std::vector<msg::SceneFrame>& frames);
-  /// Takes the next frame. The full scale is the largest value so far, and falls slowly.
+  /// Takes the next frame. The full scale is the largest value so far, and falls slowly, unless it is
+  /// the same frame again.
   void take(const msg::SceneFrame& frame);
 
   /// Nothing where a mass has the colour of its body.
@@ -65,11 +66,11 @@ class Colouring {
   std::vector<float> masses_;             // per MAT [kg]
   std::vector<std::uint32_t> link_ends_;  // 2 per link
   ColourBy what_ = ColourBy::kBody;
-  double full_ = 0.0;           // value that has the last colour: [m/s], [N] or a share
-  bool is_full_found_ = false;  // by find_scale()
-  std::vector<double> values_;  // per MAT or link; empty before there are enough frames
-  std::vector<float> before_;   // positions of the frame before
-  double before_s_ = 0.0;       // its time
+  double full_ = 0.0;             // value that has the last colour: [m/s], [N] or a share
+  bool is_full_found_ = false;    // by find_scale()
+  std::vector<double> values_;    // per MAT or link; empty before there are enough frames
+  std::vector<float> before_;     // positions of the frame before
+  std::optional<double> last_s_;  // time of the last frame
   NetForces forces_;
   Components components_;
   std::optional<std::vector<bool>> acts_;  // per link, as the components have it

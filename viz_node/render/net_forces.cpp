@@ -31,7 +31,8 @@ NetForces::Three NetForces::three_since(std::size_t oldest) const noexcept {
 }
 
 void NetForces::append(const msg::SceneFrame& frame) {
-  if (!moments_.empty() && frame.simulated_s() <= moments_.back().time_s) moments_.clear();
+  if (!moments_.empty() && frame.simulated_s() == moments_.back().time_s) return;
+  if (!moments_.empty() && frame.simulated_s() < moments_.back().time_s) moments_.clear();
   // The newest is replaced where it is no farther from the one before than those that are kept.
   const std::size_t count = moments_.size();
   if (count > 1 && moments_[count - 1].time_s - moments_[count - 2].time_s < kMinKeptApart)

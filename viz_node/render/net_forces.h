@@ -16,7 +16,7 @@ namespace cordis::viz {
 /// between the frames. Places are 32-bit numbers, so frames that are nearer would show their rounding.
 class NetForces {
  public:
-  /// Takes the next frame. One that is no later than the last begins again.
+  /// Takes the next frame. The same one again changes nothing, and an earlier one begins again.
   void append(const msg::SceneFrame& frame);
 
   /// Time over which the forces are a mean [s]; 0 before there are three frames.

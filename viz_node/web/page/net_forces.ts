@@ -23,12 +23,13 @@ export class NetForces {
 
   constructor(private readonly masses: Float32Array) {}
 
-  /** Takes a frame. One that is no later than the last begins again. */
+  /** Takes a frame. The same one again changes nothing, and an earlier one begins again. */
   append(positions: Float32Array, timeS: number): void {
     const last = this.newest;
+    if (timeS === last?.timeS) return;
     this.newest = { positions, timeS };
     if (last === null) return;
-    if (timeS <= last.timeS) {
+    if (timeS < last.timeS) {
       this.kept = [];
       return;
     }
