@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -562,32 +563,43 @@ TEST(Energy, OfASpringBesideOneSidedRingsIsThatOfTheSpringBeyondThem) {
   }
 }
 
-/// Two MATs that pass each other again and again in 1 dimension, each time through the rings about the other.
-TEST(Energy, OfOneSidedRingsIsConstantOnTheSideWithoutAForce) {
-  for (const bool pulls : {true, false}) {
-    SCOPED_TRACE(pulls ? "pulls" : "pushes");
-    LinkState state;
-    state.elasticity = ring_law();
-    state.pulls = pulls;
-    state.pushes = !pulls;
-    NetworkDescription scene;
-    scene.step = 2e-5;
-    scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.5, 0, 0)), fixed(Vec3::Zero())};
-    scene.links = {{1, 2, 20.0, 0.0, 0.0}};
-    scene.state_machines = {Behaving().state(state).state_machine};
-    scene.state_links = {{0, 1, 0, 0.1}};
-    World world = make_world(scene);
-    int passed = 0;
-    double before = 1.0;
-    for (int n = 0; n < 20'000; ++n) {
-      world.step();
-      passed += before * world.position(1).x() < 0.0 ? 1 : 0;
-      before = world.position(1).x();
-      const Energy energy = world.energy();
-      ASSERT_LT(std::abs(energy.integration_error()), 2e-3 * energy.largest) << "step " << n;
-      ASSERT_NEAR(energy.dissipated, 0.0, 1e-9 * energy.largest) << "step " << n;
+/// Two MATs that pass each other again and again, each time through the rings about the other.
+TEST(Energy, OfRingsWithALimitGoesOnWhereTheEndsPassEachOther) {
+  struct Limits {
+    bool pulls, pushes;
+    double force;
+  };
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  for (const int dimension : {1, 3}) {
+    for (const auto& [pulls, pushes, force] :
+         {Limits{true, false, kNone}, Limits{false, true, kNone}, Limits{true, true, 0.3},
+          Limits{false, true, 0.3}, Limits{true, true, 50.0}}) {
+      SCOPED_TRACE(std::to_string(dimension) + "-D, force " + std::to_string(force));
+      LinkState state;
+      state.elasticity = ring_law();
+      state.pulls = pulls;
+      state.pushes = pushes;
+      state.force_limit = force;
+      NetworkDescription scene;
+      scene.dimension = dimension;
+      scene.step = 2e-5;
+      scene.mats = {fixed(Vec3::Zero()), mass(0.01, Vec3(0.5, 0, 0)), fixed(Vec3::Zero())};
+      scene.links = {{1, 2, 20.0, 0.0, 0.0}};
+      scene.state_machines = {Behaving().state(state).state_machine};
+      scene.state_links = {{0, 1, 0, 0.1}};
+      World world = make_world(scene);
+      int passed = 0;
+      double before = 1.0;
+      for (int n = 0; n < 20'000; ++n) {
+        world.step();
+        passed += before * world.position(1).x() < 0.0 ? 1 : 0;
+        before = world.position(1).x();
+        const Energy energy = world.energy();
+        ASSERT_LT(std::abs(energy.integration_error()), 2e-3 * energy.largest) << "step " << n;
+        ASSERT_NEAR(energy.dissipated, 0.0, 1e-9 * energy.largest) << "step " << n;
+      }
+      EXPECT_GT(passed, 2);
     }
-    EXPECT_GT(passed, 2);
   }
 }
 

@@ -68,17 +68,16 @@ double energy_of_half(const LennardJones& balls, bool pulls, double distance) no
 }
 
 /// From where the energy of a law is integrated that has a limit [m]: there it is within the limit.
-/// Ends that meet in 1 dimension pass each other: what one-sided rings store counts from one side on both.
-double begin_of_integral(const Law& law, const LawPoint& link, const StateTerm& term) noexcept {
+/// Ends that meet in 1 dimension pass each other: what rings store counts from one side on both.
+double begin_of_integral(const Law& law, const LawPoint& link) noexcept {
   if (const auto* expression = std::get_if<Expression>(&law))
     return expression->distance_of_no_potential(link);
   if (argument_of(law) != LawArgument::kDistance) return link.distance - link.elongation;
   const double range = range_of(law);
   const auto* balls = std::get_if<LennardJones>(&law);
-  const double of_no_force = std::pow(2.0, 1.0 / 6.0);  // in diameters
-  const bool is_endless = balls != nullptr && range == 0.0;
-  if (term.one_sided && balls == nullptr) return range;
-  return std::copysign(is_endless ? of_no_force * balls->diameter : range, link.distance);
+  if (balls == nullptr) return range;
+  const double of_no_force = std::pow(2.0, 1.0 / 6.0) * balls->diameter;
+  return std::copysign(range == 0.0 ? of_no_force : range, link.distance);
 }
 
 }  // namespace
@@ -284,7 +283,7 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
     const double whole = term.stiffness * point.elongation + elastic_tension(law, point);
     return std::min(term.max_tension, std::max(term.min_tension, whole));
   };
-  const double begin = begin_of_integral(law, link, term);
+  const double begin = begin_of_integral(law, link);
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
   double at_begin = energy_of_limited_spring(term, begin - rest_length);
   if (is_of_distance && pulls) at_begin += potential(law, {begin});  // else no force takes it away
