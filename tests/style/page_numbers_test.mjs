@@ -26,6 +26,7 @@ const readme = (pattern) => ['viz_node/web/README.md', pattern];
 const ENCODER = 'frame_encoder.h';
 const CAMERA = 'render/view_camera.cpp';
 const PAINTER = 'render/scene_painter.cpp';
+const COLOURING = 'render/colouring.cpp';
 const SHAPE = 'render/surface_shape.cpp';
 const enumerator = (name) => [`viz_node/${ENCODER}`, `\\b${name} = (\\d+)`];
 
@@ -61,7 +62,10 @@ const EQUAL = {
   'edge of a surface': [cpp(PAINTER, 'kEdgeShare'), page('surfaces.ts', 'EDGE_SHARE')],
   'cells of the grid': [cpp(PAINTER, 'kGridCells'), page('ground.ts', 'CELLS')],
   'few MATs': [cpp(PAINTER, 'kFewMats'), ['viz_node/web/page/scene_view.ts', 'few = this\\.topology\\.matCount <= (\\d+)']],
-  'fade of the fastest speed': [cpp(PAINTER, 'kFade'), ['viz_node/web/page/scene_view.ts', 'const FALL = ([\\d.]+);']],
+  'fade of a full scale': [cpp(COLOURING, 'kFade'), page('scene_view.ts', 'FALL'), page('link_view.ts', 'FALL')],
+  'size of balls beside links': [cpp(COLOURING, 'kSmallShare'), page('scene_view.ts', 'SMALL')],
+  'components with colours': [cpp('render/components.h', 'kMaxColoured'), page('components.ts', 'MOST_COLOURED')],
+  'frames that give a force': [cpp('render/net_forces.cpp', 'kMinApart'), page('net_forces.ts', 'LEAST_APART_S')],
   'least contrast': [cpp('render/palette.h', 'kMinContrast'), page('colours.ts', 'LEAST_CONTRAST')],
   'steps to a readable colour': [cpp('render/palette.cpp', 'kSteps'), page('colours.ts', 'STEPS')],
   'matter without a colour of the scene': [cpp('render/scene_colours.h', 'kNone'), page('given_colours.ts', 'NONE')],

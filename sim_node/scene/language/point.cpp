@@ -132,6 +132,11 @@ std::vector<Vec3> read_directions(const Value& value, const std::string& what, i
   return directions;
 }
 
+Vec3 cross(const Vec3& u, const Vec3& v) noexcept {
+  return {u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(),
+          u.x() * v.y() - u.y() * v.x()};
+}
+
 std::vector<std::string> axis_words(int space) {
   const std::vector<std::string> words{"x", "y", "z"};
   return {words.begin(), words.begin() + space};

@@ -27,6 +27,9 @@ std::vector<engine::Vec3> required_points(config::MappingReader& reader, const s
 std::vector<engine::Vec3> read_directions(const config::Value& value, const std::string& what,
                                           int space, config::Problems& problems);
 
+/// u x v
+engine::Vec3 cross(const engine::Vec3& u, const engine::Vec3& v) noexcept;
+
 /// x, y and z as far as the space has them.
 std::vector<std::string> axis_words(int space);
 

@@ -22,11 +22,6 @@ struct BeamShape {
   }
 };
 
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
-          a.x() * b.y() - a.y() * b.x()};
-}
-
 /// The direction of the height of a beam in 3-D: `up` made square to the axis, z unless written, or
 /// y for a beam along z. Zero after a problem.
 Vec3 read_up(Source& source, const Vec3& axis) {

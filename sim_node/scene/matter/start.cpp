@@ -138,12 +138,6 @@ Vec3 read_spin(MappingReader& reader, int space) {
   return {0.0, 0.0, turn};
 }
 
-/// u x v
-Vec3 cross(const Vec3& u, const Vec3& v) {
-  return {u.y() * v.z() - u.z() * v.y(), u.z() * v.x() - u.x() * v.z(),
-          u.x() * v.y() - u.y() * v.x()};
-}
-
 }  // namespace
 
 StartMotion read_motion(MappingReader& reader, int space) {
