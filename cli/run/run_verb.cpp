@@ -80,12 +80,17 @@ struct RunWords {
   std::string record;
 };
 
-/// Words that make a record_node write this file, whatever the launch file says of one.
+constexpr const char* kRecorder = "record";  // name of the node that --record makes
+
+/// Words that make a record_node write this file, whatever the launch file says of one. It is started
+/// too where only some nodes are.
 void record_into(const std::string& file, RunOptions& options) {
   std::string quoted = "'";
   for (const char c : std::filesystem::absolute(file).string())
     quoted += c == '\'' ? std::string("''") : std::string(1, c);
   options.overrides.push_back("record.out=" + quoted + "'");
+  const bool is_named = std::ranges::find(options.only, kRecorder) != options.only.end();
+  if (!options.only.empty() && !is_named) options.only.emplace_back(kRecorder);
 }
 
 }  // namespace
@@ -99,7 +104,8 @@ void add_run_verb(CommandLine& line) {
   verb.more_words("NAME.key=value", options.overrides, "Replace a value of the file, for one run");
   verb.option("--duration", "TIME", words->duration, "End after so long: 500ms, 10s, 2min, 1h");
   verb.list("--only", "NAME,...", options.only, "Start these nodes alone");
-  verb.option("--record", "FILE", words->record, "Record the session into this file (MCAP)");
+  verb.option("--record", "FILE", words->record,
+              "Record the session into this file (MCAP), with --only as well");
   verb.flag("--dry-run", options.dry_run, "Print the commands instead of starting them");
   verb.option("--log-dir", "DIR", options.log_directory,
               "Also write what each node says into DIR/NAME.log");

@@ -52,6 +52,19 @@ TEST(Run, PrintsTheCommandsOfADryRunAndStartsNothing) {
                                session.launch_file() + "' --name view 'sim.title=a b'\n");
 }
 
+TEST(Run, StartsTheRecorderBesideTheNodesOfOnly) {
+  FakeSession session;
+  for (const char* only : {"sim", "record,sim"}) {
+    const auto run = session.start({"--dry-run", "--only", only, "--record", "/tmp/t.mcap"});
+    EXPECT_EQ(end_of(*run), 0) << run->output();
+    const std::size_t first = run->output().find("/record_node ");
+    ASSERT_NE(first, std::string::npos) << run->output();
+    EXPECT_EQ(run->output().find("/record_node ", first + 1), std::string::npos);
+    EXPECT_TRUE(contains(run->output(), "/sim_node "));
+    EXPECT_FALSE(contains(run->output(), "/viz_node "));
+  }
+}
+
 TEST(Run, RefusesALaunchFileThatIsWrongOrMissing) {
   FakeSession session;
   const auto unknown_clock = session.start({"clock=sundial"});
