@@ -72,11 +72,6 @@ std::vector<std::string> gravity_words(int space) {
   return words;
 }
 
-bool has_mass(const engine::NetworkDescription& network) {
-  return std::any_of(network.mats.begin(), network.mats.end(),
-                     [](const engine::Mat& mat) { return mat.kind == engine::MatKind::kMass; });
-}
-
 Outcome unknown_parameter(const std::string& name, const std::string& parameter,
                           const std::vector<std::string>& words) {
   std::string hint = config::did_you_mean(parameter, words);
@@ -406,7 +401,7 @@ std::vector<std::string> Parameters::names_in_use() const {
   }
   for (const LinkGroup& group : scene_->link_groups)
     if (group.liaison.empty() && !group.name.empty()) add_words(names, {group.name});
-  if (has_mass(scene_->network)) add_words(names, {kWorld});
+  if (scene_->network.mass_count() > 0) add_words(names, {kWorld});
   return names;
 }
 

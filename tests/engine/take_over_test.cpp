@@ -1,6 +1,5 @@
 // tests/engine/take_over_test.cpp -- another gravity and another medium while a run goes on.
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -38,13 +37,9 @@ World changed(const World& before, const NetworkDescription& scene) {
   return world;
 }
 
-std::string name_of(IntegratorKind integrator) {
-  return std::string(to_string(integrator));
-}
-
 TEST(TakeOver, OfAnotherGravityGoesOnInIt) {
   for (const IntegratorKind integrator : kIntegrators) {
-    SCOPED_TRACE(name_of(integrator));
+    SCOPED_TRACE(to_string(integrator));
     World heavy = make_world(hanging(integrator, 0.0));
     run(heavy, 700);
     NetworkDescription scene = hanging(integrator, 0.0);
@@ -71,7 +66,7 @@ TEST(TakeOver, OfAnotherGravityGoesOnInIt) {
 
 TEST(TakeOver, OfAnotherGravityCountsFromTheStartWhateverTheHeight) {
   for (const IntegratorKind integrator : kIntegrators) {
-    SCOPED_TRACE(name_of(integrator));
+    SCOPED_TRACE(to_string(integrator));
     for (const double height : {0.0, 1000.0}) {
       World heavy = make_world(hanging(integrator, height));
       run(heavy, 700);
@@ -95,7 +90,7 @@ TEST(TakeOver, OfAnotherGravityCountsFromTheStartWhateverTheHeight) {
 TEST(TakeOver, OfAnotherMediumGoesOnInIt) {
   for (const IntegratorKind integrator : kIntegrators) {
     if (integrator == IntegratorKind::kSymplectic4) continue;  // it takes no viscosity
-    SCOPED_TRACE(name_of(integrator));
+    SCOPED_TRACE(to_string(integrator));
     NetworkDescription scene = hanging(integrator, 0.0);
     World thin = make_world(scene);
     run(thin, 700);
@@ -117,7 +112,7 @@ TEST(TakeOver, OfAnotherMediumGoesOnInIt) {
 
 TEST(TakeOver, OfTheSameWorldChangesNothing) {
   for (const IntegratorKind integrator : kIntegrators) {
-    SCOPED_TRACE(name_of(integrator));
+    SCOPED_TRACE(to_string(integrator));
     const NetworkDescription scene = hanging(integrator, 3.0);
     World first = make_world(scene);
     run(first, 50);

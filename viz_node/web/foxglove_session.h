@@ -34,15 +34,11 @@ class FoxgloveSession : public std::enable_shared_from_this<FoxgloveSession> {
 
   /// @param protocol  the subprotocol that is spoken, one of those offered
   void start(const http::request<http::empty_body>& request, const std::string& protocol) {
-    beast::get_lowest_layer(stream_).expires_never();
-    stream_.set_option(websocket::stream_base::timeout{kRequestTimeout, kSilenceTimeout,
-                                                       /*keep_alive_pings=*/true});
+    prepare(stream_, kLongestFromFoxglove);
     stream_.set_option(
         websocket::stream_base::decorator([protocol](websocket::response_type& response) {
           response.set(http::field::sec_websocket_protocol, protocol);
         }));
-    stream_.read_message_max(kLongestFromFoxglove);
-    stream_.auto_fragment(false);
     stream_.async_accept(request, [self = shared_from_this()](ErrorCode error) {
       if (error) return;
       self->state_.foxglove_clients.insert(self.get());

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -123,15 +124,11 @@ struct WebServer::Impl {
     });
   }
 
-  void pump_all() {
-    const std::vector<WebSocketSession*> now(state.clients.begin(), state.clients.end());
-    for (WebSocketSession* client : now) client->pump();
-  }
-
-  void pump_foxglove() {
-    const std::vector<FoxgloveSession*> now(state.foxglove_clients.begin(),
-                                            state.foxglove_clients.end());
-    for (FoxgloveSession* client : now) client->pump();
+  /// One that cannot go on leaves the set meanwhile.
+  template <class Session>
+  static void pump(const std::unordered_set<Session*>& sessions) {
+    const std::vector<Session*> now(sessions.begin(), sessions.end());
+    for (Session* session : now) session->pump();
   }
 
   /// Also pumps clients whose frames were not acknowledged in time.
@@ -143,8 +140,8 @@ struct WebServer::Impl {
     state.status = std::make_shared<const std::string>(state.mirror.status(node::monotonic_nsec()));
     ++state.status_number;
     state.closures.report(node::monotonic_nsec());
-    pump_all();
-    pump_foxglove();
+    pump(state.clients);
+    pump(state.foxglove_clients);
   }
 
   /// Any thread: something new is in the mirror. At most one call waits at a time.
@@ -152,7 +149,7 @@ struct WebServer::Impl {
     if (awake.exchange(true)) return;
     asio::post(context, [this] {
       awake = false;
-      pump_all();
+      pump(state.clients);
     });
   }
 
@@ -162,7 +159,7 @@ struct WebServer::Impl {
     if (foxglove_awake.exchange(true)) return;
     asio::post(context, [this] {
       foxglove_awake = false;
-      pump_foxglove();
+      pump(state.foxglove_clients);
     });
   }
 

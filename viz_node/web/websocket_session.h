@@ -19,6 +19,16 @@ namespace cordis::viz {
 inline constexpr auto kSilenceTimeout = std::chrono::seconds(30);
 inline constexpr std::size_t kLongestFromClient = 1024;  // [bytes]
 
+/// Makes a connection ready to be accepted as a WebSocket.
+/// @param longest  message that the client may send [bytes]
+inline void prepare(websocket::stream<beast::tcp_stream>& stream, std::size_t longest) {
+  beast::get_lowest_layer(stream).expires_never();
+  stream.set_option(websocket::stream_base::timeout{kRequestTimeout, kSilenceTimeout,
+                                                    /*keep_alive_pings=*/true});
+  stream.read_message_max(longest);
+  stream.auto_fragment(false);
+}
+
 /// One page. Sends one message at a time, whatever is most due; reads acknowledgements and
 /// commands.
 class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
@@ -42,11 +52,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
   WebSocketSession& operator=(const WebSocketSession&) = delete;
 
   void start(const http::request<http::empty_body>& request) {
-    beast::get_lowest_layer(stream_).expires_never();
-    stream_.set_option(websocket::stream_base::timeout{kRequestTimeout, kSilenceTimeout,
-                                                       /*keep_alive_pings=*/true});
-    stream_.read_message_max(kLongestFromClient);
-    stream_.auto_fragment(false);
+    prepare(stream_, kLongestFromClient);
     stream_.async_accept(request, [self = shared_from_this()](ErrorCode error) {
       if (error) return;
       self->joined_ = true;
