@@ -14,12 +14,12 @@
 #include <unistd.h>
 
 #include "node/dds/participant_ports.h"
+#include "node/dds/socket_buffer.h"
 #include "node/session_network.h"
 
 namespace cordis::cli {
 namespace {
 
-constexpr int kWantedBuffer = 4 << 20;  // [bytes], as node/dds asks for
 constexpr int kLargestDomain = 101;
 
 /// A socket of its own, closed at the end.
@@ -63,16 +63,6 @@ bool datagram_arrives() {
   pollfd arrives{socket.file(), POLLIN, 0};
   char received = 0;
   return poll(&arrives, 1, kPatienceMsec) == 1 && recv(socket.file(), &received, 1, 0) == 1;
-}
-
-/// What the kernel gives when it is asked for kWantedBuffer.
-int granted_buffer(int option) {
-  const Socket socket(SOCK_DGRAM);
-  int bytes = kWantedBuffer;
-  socklen_t size = sizeof bytes;
-  setsockopt(socket.file(), SOL_SOCKET, option, &bytes, size);
-  if (getsockopt(socket.file(), SOL_SOCKET, option, &bytes, &size) != 0) return 0;
-  return bytes / 2;  // the kernel doubles it for its own book-keeping
 }
 
 /// Pairs of ports of a domain that are taken, at an address of this host.
@@ -127,19 +117,19 @@ Finding check_loopback() {
 
 Finding check_socket_buffers() {
   Finding finding{.key = "network.buffers", .title = "socket buffers"};
-  const int receive = granted_buffer(SO_RCVBUF);
-  const int send = granted_buffer(SO_SNDBUF);
+  const std::uint32_t receive = dds::granted_bytes(dds::SocketBuffer::kReceive);
+  const std::uint32_t send = dds::granted_bytes(dds::SocketBuffer::kSend);
   finding.values = {
-      {"receive_bytes", receive}, {"send_bytes", send}, {"wanted_bytes", kWantedBuffer}};
+      {"receive_bytes", receive}, {"send_bytes", send}, {"wanted_bytes", dds::kSocketBufferBytes}};
   finding.text = fmt::format("{} KiB to receive, {} KiB to send", receive / 1024, send / 1024);
-  if (std::min(receive, send) >= kWantedBuffer) return finding;
+  if (std::min(receive, send) >= dds::kSocketBufferBytes) return finding;
   finding.level = Level::kWarning;
   finding.text += fmt::format(
       ", of {} KiB wanted: large scenes lose frames (net.core.rmem_max, net.core.wmem_max)",
-      kWantedBuffer / 1024);
+      dds::kSocketBufferBytes / 1024);
   finding.advice = "allow larger ones; a line in /etc/sysctl.d keeps it";
-  finding.commands = {
-      fmt::format("sudo sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}", kWantedBuffer)};
+  finding.commands = {fmt::format("sudo sysctl -w net.core.rmem_max={0} net.core.wmem_max={0}",
+                                  dds::kSocketBufferBytes)};
   return finding;
 }
 

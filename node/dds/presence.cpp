@@ -16,6 +16,7 @@
 #include "node/dds/departure.h"
 #include "node/dds/process_identity.h"
 #include "node/dds/resending_thread.h"
+#include "node/dds/socket_buffer.h"
 
 namespace cordis::dds {
 
@@ -23,7 +24,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
-constexpr std::uint32_t kSocketBufferBytes = 4u << 20;
 // Below what an Ethernet frame holds, in a tunnel too: a larger datagram is lost with any of its
 // parts.
 constexpr std::uint32_t kLargestDatagramBytes = 1400;

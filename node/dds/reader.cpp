@@ -23,11 +23,17 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 template <class Message>
 struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
-  Impl(Participant::Impl& joined, Topic topic, Arrival* announced)
+  Impl(Participant::Impl& joined, Topic topic, Arrival* announced, Repair repair)
       : participant(joined),
-        row(qos_of(topic, joined.config().lockstep, joined.config().standbys)),
+        row(row_of(topic, joined.config(), repair)),
         arrival(announced),
         mailbox(announced != nullptr ? kMailboxRoom * row.history_depth : 0) {}
+
+  static TopicQos row_of(Topic topic, const ParticipantConfig& config, Repair repair) noexcept {
+    TopicQos row = qos_of(topic, config.lockstep, config.standbys);
+    if (repair == Repair::kNone) row.reliable = false;
+    return row;
+  }
 
   Participant::Impl& participant;
   const TopicQos row;
@@ -172,8 +178,8 @@ struct Reader<Message>::Impl final : fast::DataReaderListener, Endpoint {
 };
 
 template <class Message>
-Reader<Message>::Reader(Participant& participant, Topic topic, Arrival* arrival)
-    : impl_(std::make_unique<Impl>(participant.impl(), topic, arrival)) {
+Reader<Message>::Reader(Participant& participant, Topic topic, Arrival* arrival, Repair repair)
+    : impl_(std::make_unique<Impl>(participant.impl(), topic, arrival, repair)) {
   if (arrival != nullptr) arrival->attach(participant.impl().present_socket());
   participant.impl().add(*impl_);
 }

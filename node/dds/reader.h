@@ -20,8 +20,10 @@ class Reader {
   /// @param arrival  receives word of every message, and outlives the reader; may be null. With it,
   ///                 what the participant itself writes is left out, and in real time the newest
   ///                 message of each device and writer stays until it is taken
+  /// @param repair   kNone for what is only looked at, and arrives all but always
   /// @throws std::runtime_error when DDS refuses.
-  Reader(Participant& participant, Topic topic, Arrival* arrival = nullptr);
+  Reader(Participant& participant, Topic topic, Arrival* arrival = nullptr,
+         Repair repair = Repair::kOfTopic);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

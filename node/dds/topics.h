@@ -37,6 +37,12 @@ struct TopicQos {
   int exclusive_for_msec = 0;
 };
 
+/// What a reader asks of a reliable writer.
+enum class Repair : std::uint8_t {
+  kOfTopic,  ///< what the topic says: a reliable one is sent again where it was lost
+  kNone      ///< nothing: what is lost stays lost, and no acknowledgement is sent or timed
+};
+
 /// @param lockstep   the two gesture topics are reliable in a lockstep session, and best effort
 ///                   otherwise
 /// @param standbys  they are exclusive in a session where several nodes may play a device. The

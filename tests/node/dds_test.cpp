@@ -415,6 +415,34 @@ TEST(Dds, CarriesAFrameOfAHundredThousandMats) {
   EXPECT_TRUE(received == frame);
 }
 
+TEST(Dds, AReaderThatAsksForNoRepairReadsAReliableTopicAndAcknowledgesNothing) {
+  Participant sim(member("unrepaired", "sim"));
+  Participant viewer(member("unrepaired", "view"));
+  Writer<msg::SceneFrame> writer(sim, Topic::kFrame);
+  Reader<msg::SceneFrame> looks(viewer, Topic::kFrame, nullptr, Repair::kNone);
+  ASSERT_TRUE(
+      eventually([&] { return writer.matched_count() == 1 && looks.matched_count() == 1; }));
+  msg::SceneFrame frame;
+  frame.position_m(std::vector<float>(30'000, 0.25f));
+  msg::SceneFrame received;
+  ASSERT_TRUE(eventually([&] {
+    frame.frame(frame.frame() + 1);
+    return writer.write(frame) && looks.wait(100ms) && looks.take(received);
+  }));
+  EXPECT_EQ(received.position_m(), frame.position_m());
+  // No reader is waited for, though none acknowledged.
+  EXPECT_TRUE(writer.wait_until_acknowledged(0ms));
+
+  // A reader of the same topic that has all repaired is waited for until it has acknowledged.
+  Reader<msg::SceneFrame> keeps(viewer, Topic::kFrame);
+  ASSERT_TRUE(
+      eventually([&] { return writer.matched_count() == 2 && keeps.matched_count() == 1; }));
+  ASSERT_TRUE(writer.write(frame));
+  EXPECT_TRUE(writer.wait_until_acknowledged(kPatience));
+  ASSERT_TRUE(receive(keeps, received));
+  EXPECT_TRUE(received == frame);
+}
+
 TEST(Dds, WaitingEndsWhenInterrupted) {
   Participant sim(member("interrupt", "sim"));
   Reader<msg::GesturePositions> reader(sim, Topic::kPositions);

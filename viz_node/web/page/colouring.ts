@@ -52,15 +52,17 @@ export class ColouringBox {
   private readonly scale = document.querySelector<HTMLElement>('#scale')!;
   private readonly strip = this.scale.querySelector<HTMLElement>('i')!;
 
+  private current = this.select.value as Colouring; // of the box, which takes long to ask in each frame
+
   constructor(private readonly chosen: () => void) {
     this.select.addEventListener('change', () => {
-      chosen();
+      this.choose(this.select.value as Colouring);
       this.select.blur(); // keys are for the view again
     });
   }
 
   get value(): Colouring {
-    return this.select.value as Colouring;
+    return this.current;
   }
 
   /** Components and stretch are of links, forces of free masses. */
@@ -87,7 +89,7 @@ export class ColouringBox {
   }
 
   private choose(value: Colouring): void {
-    this.select.value = value;
+    this.select.value = this.current = value;
     this.chosen();
   }
 }

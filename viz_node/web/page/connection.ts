@@ -6,6 +6,7 @@ const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 2000;
 // viz_node speaks four times a second, whatever the scene does.
 const SILENCE_MS = 4000;
+const LOOK_MS = 500; // for silence
 
 export interface Listener {
   message(message: Message): void;
@@ -21,6 +22,7 @@ export class Connection {
   private socket: WebSocket | null = null;
   private pauseMs = FIRST_PAUSE_MS;
   private watchdog = 0;
+  private lastMs = 0; // when the newest message came
   private received = 0; // sequence of the newest frame of this connection
   private acknowledged = 0;
 
@@ -77,7 +79,7 @@ export class Connection {
 
   private receive(socket: WebSocket, data: string | ArrayBuffer): void {
     if (socket !== this.socket) return;
-    this.watch(socket);
+    this.lastMs = performance.now();
     try {
       const message = typeof data === 'string' ? (JSON.parse(data) as Message) : decodeBinary(data);
       if (message.type === 'frame') this.received = message.sequence;
@@ -89,17 +91,18 @@ export class Connection {
 
   /** A connection that falls silent (a laptop that slept, a tunnel that broke) is given up and opened again. */
   private watch(socket: WebSocket): void {
-    clearTimeout(this.watchdog);
-    this.watchdog = window.setTimeout(() => {
+    this.lastMs = performance.now();
+    this.watchdog = window.setInterval(() => {
+      if (performance.now() - this.lastMs < SILENCE_MS) return;
       socket.close();
       this.reopen(socket);
-    }, SILENCE_MS);
+    }, LOOK_MS);
   }
 
   private reopen(socket: WebSocket): void {
     if (socket !== this.socket) return;
     this.socket = null;
-    clearTimeout(this.watchdog);
+    clearInterval(this.watchdog);
     this.listener.closed();
     window.setTimeout(() => this.open(), this.pauseMs);
     this.pauseMs = Math.min(2 * this.pauseMs, LONGEST_PAUSE_MS);

@@ -19,7 +19,6 @@ export class LinkView {
   widest = 0; // largest stretch shown lately, a share
   private states: Uint8Array; // + LINK_IS_IDLE where a link does nothing
   private readonly lengths: Float32Array; // that stretches are counted from [m]
-  private readonly stretches: Float32Array; // in the newest frame, while they are shown
   private looks: Uniforms[] = []; // by key
   private colouring: Colouring = 'bodies';
   private isOld = true; // the parts, since the colouring or the palette changed
@@ -36,7 +35,6 @@ export class LinkView {
     this.states = new Uint8Array(linkCount);
     this.keys = new Uint8Array(linkCount);
     this.lengths = new Float32Array(linkCount);
-    this.stretches = new Float32Array(linkCount);
     this.components = new Components(matCount);
     const index = new VertexArray<Uint32Array>(new Uint32Array(2 * linkCount), 1);
     this.shape = shapeOf('lines', LINK_PROGRAM, vertices, { index, uniforms, isVisible: isDrawn });
@@ -85,65 +83,86 @@ export class LinkView {
 
   private sortByState(): void {
     const { states, keys } = this;
-    for (let link = 0; link < keys.length; ++link)
-      keys[link] = states[link]! >= LINK_IS_IDLE ? NOT_DRAWN : PATTERNS.length * colourOfState(states[link]!) + this.groups.of(link).pattern;
+    const counts = new Uint32Array(NOT_DRAWN + 1);
+    for (let link = 0; link < keys.length; ++link) {
+      const key = states[link]! >= LINK_IS_IDLE ? NOT_DRAWN : PATTERNS.length * colourOfState(states[link]!) + this.groups.of(link).pattern;
+      keys[link] = key;
+      counts[key]! += 1;
+    }
     if (this.isOld) this.looks = this.palette.link_states.flatMap((colour) => PATTERNS.map((_, pattern) => linkUniforms(colour, pattern)));
-    this.layOut();
+    this.layOut(counts);
   }
 
   private sortByStretch(positions: Float32Array): void {
-    const { states, keys, stretches, lengths } = this;
-    const { linkEnds } = this.topology;
-    let widest = 0;
-    // As stretchOf(), without a call for each link: there are many.
-    for (let link = 0; link < keys.length; ++link) {
-      const before = lengths[link]!;
-      if (before === 0 || states[link]! >= LINK_IS_IDLE) {
-        stretches[link] = 0;
-        continue;
-      }
-      const a = 3 * linkEnds[2 * link]!;
-      const b = 3 * linkEnds[2 * link + 1]!;
-      const x = positions[a]! - positions[b]!;
-      const y = positions[a + 1]! - positions[b + 1]!;
-      const z = positions[a + 2]! - positions[b + 2]!;
-      const stretch = Math.sqrt(x * x + y * y + z * z) / before - 1;
-      stretches[link] = stretch;
-      if (stretch > widest) widest = stretch;
-      else if (-stretch > widest) widest = -stretch;
-    }
-    this.widest = Math.max(widest, FALL * this.widest);
     const colours = this.palette.stretches;
-    const half = (colours.length - 1) / 2;
-    const scale = this.widest > 0 ? half / this.widest : 0;
-    for (let link = 0; link < keys.length; ++link)
-      keys[link] = states[link]! >= LINK_IS_IDLE ? NOT_DRAWN : Math.round(half + scale * stretches[link]!);
+    const counts = new Uint32Array(NOT_DRAWN + 1);
+    // The full scale is that of the last frames, until a link is beyond it.
+    const scale = FALL * this.widest;
+    const widest = this.keyByStretch(positions, scale, counts);
+    this.widest = Math.max(widest, scale);
+    if (widest > scale) this.keyByStretch(positions, widest, counts.fill(0));
     if (this.isOld) this.looks = colours.map((colour) => linkUniforms(colour, 0));
-    this.layOut();
+    this.layOut(counts);
   }
 
-  /** Lays the links of one key side by side in the index. Those that do nothing are not drawn. */
-  private layOut(): void {
+  /**
+   * Gives each link the key of its stretch. One loop does it all, without a call for each link: there are many.
+   * @param full    stretch that has the last colour
+   * @param counts  receives how many links each key has
+   * @returns the largest stretch
+   */
+  private keyByStretch(positions: Float32Array, full: number, counts: Uint32Array): number {
+    const { states, keys, lengths } = this;
+    const { linkEnds } = this.topology;
+    const last = this.palette.stretches.length - 1;
+    const middle = last / 2;
+    const scale = full > 0 ? middle / full : 0;
+    let widest = 0;
+    for (let link = 0, end = 0; link < keys.length; ++link, end += 2) {
+      let key = NOT_DRAWN;
+      if (states[link]! < LINK_IS_IDLE) {
+        const before = lengths[link]!;
+        const a = 3 * linkEnds[end]!;
+        const b = 3 * linkEnds[end + 1]!;
+        const x = positions[a]! - positions[b]!;
+        const y = positions[a + 1]! - positions[b + 1]!;
+        const z = positions[a + 2]! - positions[b + 2]!;
+        const stretch = before > 0 ? Math.sqrt(x * x + y * y + z * z) / before - 1 : 0; // as stretchOf()
+        const size = Math.abs(stretch);
+        if (size > widest) widest = size;
+        const place = middle + scale * stretch + 0.5;
+        key = place < 0 ? 0 : place < last ? place | 0 : last;
+      }
+      keys[link] = key;
+      counts[key]! += 1;
+    }
+    return widest;
+  }
+
+  /**
+   * Lays the links of one key side by side in the index. Those that do nothing are not drawn.
+   * @param counts  how many links each key has
+   */
+  private layOut(counts: Uint32Array): void {
     if (!this.isDrawn) return;
     const { keys } = this;
     const ends = this.topology.linkEnds;
-    const places = new Uint32Array(NOT_DRAWN + 1);
-    for (const key of keys) places[key]! += 2;
+    const places = new Uint32Array(NOT_DRAWN);
     const parts: Part[] = [];
     let filled = 0;
     for (let key = 0; key < NOT_DRAWN; ++key) {
-      const count = places[key]!;
+      const count = 2 * counts[key]!;
       places[key] = filled;
       if (count > 0) parts.push({ first: filled, count, uniforms: this.looks[key]! });
       filled += count;
     }
     const index = this.shape.index!;
-    for (let link = 0; link < keys.length; ++link) {
+    for (let link = 0, end = 0; link < keys.length; ++link, end += 2) {
       const key = keys[link]!;
       if (key === NOT_DRAWN) continue;
       const place = places[key]!;
-      index.array[place] = ends[2 * link]!;
-      index.array[place + 1] = ends[2 * link + 1]!;
+      index.array[place] = ends[end]!;
+      index.array[place + 1] = ends[end + 1]!;
       places[key] = place + 2;
     }
     this.shape.parts = parts;

@@ -5,20 +5,23 @@ export class MotionBox {
   private readonly select = document.querySelector<HTMLSelectElement>('#motion')!;
   private readonly note = document.querySelector<HTMLElement>('#exaggeration')!;
 
+  factor = Number(this.select.value); // of the box, which takes long to ask in each frame
+
   constructor(private readonly changed: () => void) {
     this.select.addEventListener('change', () => {
-      changed();
+      this.take();
       this.select.blur(); // keys are for the view again
     });
-  }
-
-  get factor(): number {
-    return Number(this.select.value);
   }
 
   /** The next larger factor; after the largest the motion as it is. */
   step(): void {
     this.select.selectedIndex = (this.select.selectedIndex + 1) % this.select.length;
+    this.take();
+  }
+
+  private take(): void {
+    this.factor = Number(this.select.value);
     this.changed();
   }
 
@@ -28,7 +31,7 @@ export class MotionBox {
   }
 
   say(text: string): void {
-    this.note.hidden = text === '';
+    if (this.note.hidden !== (text === '')) this.note.hidden = text === '';
     setText(this.note, text);
   }
 }

@@ -69,6 +69,8 @@ export class Page {
   frozen = false;
 
   private readonly stage = find('#stage');
+  private readonly ruler = find('#ruler');
+  private rulerWidth = ''; // of its line
   private readonly marks = new Marks(this.stage);
   private readonly plots = new SignalPanel((ending) => this.fileName(ending), () => this.picked?.showPlotted());
   private readonly clock = new ClockOffset();
@@ -293,6 +295,7 @@ export class Page {
     this.plotsMs = now;
     this.plotsDirty = false;
     this.plots.draw();
+    this.colouring.show(this.scale);
   }
 
   /** A length to measure by; in perspective it holds at the middle of the scene. */
@@ -300,10 +303,10 @@ export class Page {
     if (this.view === null || this.lastFrame === null) return;
     const scale = this.view.rig.metresPerPixel;
     const length = roundLength(160 * scale);
-    const ruler = find('#ruler');
-    (ruler.firstElementChild as HTMLElement).style.width = `${length / scale}px`;
+    const ruler = this.ruler;
+    const width = `${length / scale}px`;
+    if (this.rulerWidth !== width) (ruler.firstElementChild as HTMLElement).style.width = this.rulerWidth = width;
     setText(ruler.lastElementChild!, joined(withUnit(length, 'm')).replace(/\.0+(?=\D)/, ''));
-    this.colouring.show(this.scale);
     this.motion.say(this.motion.textSince(this.view.countedSinceS));
     const version = `${this.view.links?.componentsVersion ?? 0} ${this.view.bonds.isCut}`;
     if (version !== this.legendVersion) this.showLegend();
