@@ -33,16 +33,26 @@ using Shared = std::shared_ptr<const Network>;
 constexpr int kStepsBefore = 20;  // as lists are made
 constexpr std::uint32_t kSide = 50;
 
-/// Links in runs, as a scene's generator makes them.
-Shared net_in_runs() {
-  return std::make_shared<const Network>(cordis::cli::square_net(3, kSide));
+/// Links in runs, as a scene's generator makes them, with small viscosity.
+NetworkDescription net_in_runs(int dimension) {
+  return cordis::cli::square_net(dimension, kSide);
+}
+
+NetworkDescription undamped(NetworkDescription network) {
+  for (cordis::engine::Link& link : network.links) link.viscosity = 0.0;
+  return network;
+}
+
+NetworkDescription in_medium(NetworkDescription network) {
+  network.medium_viscosity = 0.01;
+  return network;
 }
 
 /// Links that fit in no run.
-Shared shuffled_net() {
-  NetworkDescription net = cordis::cli::square_net(3, kSide);
+NetworkDescription shuffled_net() {
+  NetworkDescription net = net_in_runs(3);
   std::shuffle(net.links.begin(), net.links.end(), std::mt19937_64(1990));
-  return std::make_shared<const Network>(net);
+  return net;
 }
 
 NetworkDescription string_of_masses() {
@@ -58,8 +68,8 @@ NetworkDescription string_of_masses() {
   return string;
 }
 
-Shared string_in_1d() {
-  return std::make_shared<const Network>(string_of_masses());
+Shared by_cordis(const NetworkDescription& network) {
+  return std::make_shared<const Network>(network);
 }
 
 Shared by_leapfrog(NetworkDescription network) {
@@ -85,11 +95,24 @@ struct Scene {
 
 const std::vector<Scene>& scenes() {
   static const std::vector<Scene> all{
-      {"net_in_runs", net_in_runs},
-      {"shuffled_net", shuffled_net},
-      {"string_in_1d", string_in_1d},
-      {"leapfrog_net", [] { return by_leapfrog(cordis::cli::square_net(3, kSide)); }},
-      {"leapfrog_string", [] { return by_leapfrog(string_of_masses()); }},
+      {"net_in_runs", [] { return by_cordis(net_in_runs(3)); }},
+      {"net_in_runs_in_2d", [] { return by_cordis(net_in_runs(2)); }},
+      {"net_in_runs_in_1d", [] { return by_cordis(net_in_runs(1)); }},
+      {"undamped_net_in_runs", [] { return by_cordis(undamped(net_in_runs(3))); }},
+      {"net_in_runs_in_medium", [] { return by_cordis(in_medium(net_in_runs(3))); }},
+      {"shuffled_net", [] { return by_cordis(shuffled_net()); }},
+      {"string_in_1d", [] { return by_cordis(string_of_masses()); }},
+      {"undamped_string_in_1d", [] { return by_cordis(undamped(string_of_masses())); }},
+      {"string_in_medium", [] { return by_cordis(in_medium(string_of_masses())); }},
+      {"leapfrog_net_in_runs", [] { return by_leapfrog(net_in_runs(3)); }},
+      {"leapfrog_net_in_runs_in_2d", [] { return by_leapfrog(net_in_runs(2)); }},
+      {"leapfrog_net_in_runs_in_1d", [] { return by_leapfrog(net_in_runs(1)); }},
+      {"leapfrog_undamped_net_in_runs", [] { return by_leapfrog(undamped(net_in_runs(3))); }},
+      {"leapfrog_net_in_runs_in_medium", [] { return by_leapfrog(in_medium(net_in_runs(3))); }},
+      {"leapfrog_shuffled_net", [] { return by_leapfrog(shuffled_net()); }},
+      {"leapfrog_string_in_1d", [] { return by_leapfrog(string_of_masses()); }},
+      {"leapfrog_undamped_string_in_1d", [] { return by_leapfrog(undamped(string_of_masses())); }},
+      {"leapfrog_string_in_medium", [] { return by_leapfrog(in_medium(string_of_masses())); }},
       {"heavy_string", heavy_string},
       {"links_with_states", [] { return net_of(cordis::bench::kConditions); }},
       {"links_with_expressions", [] { return net_of(cordis::bench::kExpression); }},

@@ -8,17 +8,15 @@
 namespace cordis::engine {
 
 /// A Integrator whose account belongs to the moment of the last forces: half of the works of a step
-/// come before that moment, the others are entered with the next step. It remembers one vector for
-/// each MAT.
+/// come before that moment, the others are entered with the next step.
 class FullStepIntegrator : public Integrator {
  public:
   void serialize(Archive& archive) override;
   void restored(WorldState& world) noexcept final;
 
  protected:
-  /// @param more  values to be remembered besides one vector for each MAT
-  explicit FullStepIntegrator(std::size_t mat_count, std::size_t more = 0)
-      : memory_(4 * mat_count + more, 0.0) {}
+  /// @param value_count  so many values are remembered
+  explicit FullStepIntegrator(std::size_t value_count) : memory_(value_count, 0.0) {}
 
   /// Enters the works that were pending, and moves the ports.
   void begin_step(WorldState& world, StepEnergy& energy) noexcept;
@@ -34,9 +32,9 @@ class FullStepIntegrator : public Integrator {
   /// After the MATs have moved.
   void end_step(WorldState& world) noexcept;
 
-  AlignedVector<double> memory_;  // 4 x N, and more
-  StepEnergy pending_;            // works after the moment of the last forces
-  bool started_ = false;          // a step has been done
+  AlignedVector<double> memory_;
+  StepEnergy pending_;    // works after the moment of the last forces
+  bool started_ = false;  // a step has been done
 };
 
 }  // namespace cordis::engine

@@ -195,8 +195,7 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
     if (first) work.dissipated += 0.25 * dot(end - begin, column(response_, i));
     work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
-    column(extrapolated, i) =
-        first ? Vec3(column(second_, i)) : Vec3(2.0 * end - column(middle_, i));
+    if (!first) column(second_, i) = 2.0 * end - column(middle_, i);
     column(displacement_, i) = end;
   }
   work.dissipated = rate * rate * (work.dissipated + work.port_work);
@@ -205,8 +204,9 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
 
   work.non_finite_mats = mats.move_by(displacement_);
   for (std::uint32_t i = 0; i < count; ++i) {
-    column(extrapolated, i) =
-        mass_[i] == 0.0 ? mats.position(i) : Vec3(mats.position(i) - column(extrapolated, i));
+    const Vec3 position = mats.position(i);
+    mats.layout().set_vector(extrapolated.data(), i,
+                             mass_[i] == 0.0 ? position : Vec3(position - column(second_, i)));
   }
   return work;
 }

@@ -72,7 +72,7 @@ class ImplicitDamping {
     std::uint32_t non_finite_mats = 0;
   };
   /// Ends the period: moves the masses to x(n+1).
-  /// @param extrapolated   becomes x(n+1) - dt v(n+1)
+  /// @param extrapolated   becomes x(n+1) - dt v(n+1), stored as the MATs are
   /// @param first  this is the period from x(0)
   /// Real time: O(MATs + dampers), no allocation.
   Work advance(MatArray& mats, AlignedVector<double>& extrapolated, bool first) noexcept;
@@ -107,7 +107,7 @@ class ImplicitDamping {
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   AlignedVector<double> first_;     // dt u1
-  AlignedVector<double> second_;    // dt u2
+  AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)
   AlignedVector<double> middle_;    // dt w
   AlignedVector<double> response_;  // also the forces that dampers carry in the first period [kg m]
   AlignedVector<double> force_;

@@ -13,7 +13,7 @@ constexpr std::uint64_t kStepsOfStart = 8;
 }  // namespace
 
 ImplicitEuler::ImplicitEuler(const NetworkDescription& network)
-    : FullStepIntegrator(network.mats.size()),
+    : FullStepIntegrator(4 * network.mats.size()),
       matrix_(network),
       change_(memory_.size(), 0.0),
       carried_(memory_.size(), 0.0),

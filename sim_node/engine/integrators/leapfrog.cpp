@@ -2,15 +2,19 @@
 #include "sim_node/engine/integrators/leapfrog.h"
 
 #include <algorithm>
+#include <array>
 
 #include "sim_node/engine/integrators/world_state.h"
+#include "sim_node/engine/links/link_runs.h"
 
 namespace cordis::engine {
 
 Leapfrog::Leapfrog(const NetworkDescription& network)
-    : FullStepIntegrator(network.mats.size(), 4 * network.mats.size() + 2),
+    : FullStepIntegrator(layout_of(network).value_count(network.mats.size()) +
+                         4 * network.mats.size() + 2),
       damping_(damps_implicitly(network) ? std::make_unique<ImplicitDamping>(network) : nullptr),
       stiff_friction_(network),
+      layout_(layout_of(network)),
       velocity_(4 * network.mats.size(), 0.0) {}
 
 void Leapfrog::start(WorldState& world) noexcept {
@@ -20,7 +24,7 @@ void Leapfrog::start(WorldState& world) noexcept {
     world.vector_springs.drop_viscosity();
   }
   world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
-  for (std::uint32_t i = 0; i < mats.count(); ++i) column(extrapolated_, i) = mats.delayed(i);
+  for (std::uint32_t i = 0; i < mats.count(); ++i) set_extrapolated(i, mats.delayed(i));
   world.outside.start(mats);
   if (damping_) {
     mats.clear_forces(*world.team);
@@ -49,7 +53,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
   if (damping_) {
     moved.non_finite_mats = advance_damped(world, energy);
   } else {
-    memory_[2 * velocity_.size()] = 0.0;
+    last_kick_count() = 0.0;
     if (world.freezing) energy.dissipated += stop_what_rests(world);
     const AdvanceReport advance = mats.extrapolate(world.kernel, extrapolated_, *world.team);
     moved.non_finite_mats = advance.non_finite_mats;
@@ -66,7 +70,7 @@ Moved Leapfrog::step(WorldState& world) noexcept {
 double Leapfrog::stop_what_rests(WorldState& world) noexcept {
   const double energy = world.freezing->choose_movers(world, true);
   for (const std::uint32_t mat : world.freezing->stopped()) {
-    column(extrapolated_, mat) = world.mats.position(mat);
+    set_extrapolated(mat, world.mats.position(mat));
   }
   return energy;
 }
@@ -87,19 +91,18 @@ void Leapfrog::adopt(WorldState& world) noexcept {
 void Leapfrog::feel_ports(const WorldState& world) noexcept {
   for (const std::uint32_t port : world.outside.ports()) {
     const Vec3 delayed = world.mats.delayed(port);
-    column(extrapolated_, port) = delayed;
+    set_extrapolated(port, delayed);
     if (!world.mats.is_driven(port)) continue;
     const Vec3 next = world.outside.driven_place(port, world.step_count + 1);
     if (!next.allFinite()) continue;
-    column(extrapolated_, port) = world.mats.position(port) - 0.5 * (next - delayed);
+    set_extrapolated(port, world.mats.position(port) - 0.5 * (next - delayed));
   }
 }
 
 void Leapfrog::begin_damping(WorldState& world) noexcept {
   const MatArray& mats = world.mats;
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
-    const Vec3 before =
-        started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : column(extrapolated_, i);
+    const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : extrapolated(i);
     column(velocity_, i) = mats.position(i) - before;
   }
   for (const std::uint32_t port : world.outside.ports()) {
@@ -119,17 +122,16 @@ std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) no
   pending_.dissipated += (1.0 - before) * work.dissipated;
   pending_.port_work += (1.0 - before) * work.port_work;
   std::copy(damping_->kick().begin(), damping_->kick().end(), last_kick());
-  memory_[memory_.size() - 2] = 1.0;
+  last_kick_count() = 1.0;
   memory_.back() = work.kinetic;
   return work.non_finite_mats;
 }
 
 /// dt v at the moment of the last forces [m].
 Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept {
-  const Vec3 extrapolated = column(extrapolated_, mat);
-  if (!started_) return world.mats.position(mat) - extrapolated;
+  if (!started_) return world.mats.position(mat) - extrapolated(mat);
   const Vec3 delayed = world.mats.delayed(mat);
-  return (world.mats.position(mat) - delayed) - (delayed - extrapolated);
+  return (world.mats.position(mat) - delayed) - (delayed - extrapolated(mat));
 }
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {
@@ -141,12 +143,17 @@ Energy Leapfrog::energy(WorldState& world) const noexcept {
 
 Vec3 Leapfrog::velocity(const WorldState& world, std::uint32_t mat) const noexcept {
   if (!world.mats.is_mass(mat)) return Integrator::velocity(world, mat);
-  return (world.mats.position(mat) - column(extrapolated_, mat)) / world.network->step();
+  return (world.mats.position(mat) - extrapolated(mat)) / world.network->step();
 }
 
 void Leapfrog::serialize(Archive& archive) {
   FullStepIntegrator::serialize(archive);
-  archive.hash({memory_.data(), damping_ ? memory_.size() : velocity_.size()});
+  if (!archive.hashes()) return;
+  for (std::size_t i = 0; i < velocity_.size() / 4; ++i) {
+    const Vec3 of_mat = extrapolated(i);
+    archive.hash(std::array{of_mat.x(), of_mat.y(), of_mat.z(), 0.0});
+  }
+  if (damping_) archive.hash({last_kick(), velocity_.size() + 2});
 }
 
 }  // namespace cordis::engine

@@ -9,6 +9,7 @@
 #include "sim_node/engine/integrators/implicit_damping.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
+#include "sim_node/engine/matter/mat_layout.h"
 
 namespace cordis::engine {
 
@@ -45,16 +46,24 @@ class Leapfrog final : public FullStepIntegrator {
   void feel_ports(const WorldState& world) noexcept;
   void begin_damping(WorldState& world) noexcept;
   std::uint32_t advance_damped(WorldState& world, StepEnergy& energy) noexcept;
-  double* last_kick() noexcept { return memory_.data() + velocity_.size(); }
-  bool has_last_kick() const noexcept { return memory_[2 * velocity_.size()] != 0.0; }
+  Vec3 extrapolated(std::size_t mat) const noexcept {
+    return layout_.vector(extrapolated_.data(), mat);
+  }
+  void set_extrapolated(std::size_t mat, const Vec3& position) noexcept {
+    layout_.set_vector(extrapolated_.data(), mat, position);
+  }
+  double* last_kick() noexcept { return memory_.data() + memory_.size() - 2 - velocity_.size(); }
+  double& last_kick_count() noexcept { return memory_[memory_.size() - 2]; }
+  bool has_last_kick() const noexcept { return memory_[memory_.size() - 2] != 0.0; }
   Vec3 centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept;
 
-  // memory_: extrapolated, 4 x N; then of implicit dampers the kick of the last step, 4 x N, 1 if there is
-  // one, and the kinetic energy of the moment of the last forces [J].
+  // memory_: extrapolated, stored as the MATs are; then of implicit dampers the kick of the last step, 4 x N,
+  // 1 if there is one, and the kinetic energy of the moment of the last forces [J].
   AlignedVector<double>& extrapolated_ = memory_;  // x(n) - dt v(n) [m]
   std::unique_ptr<ImplicitDamping> damping_;       // none: dampers see the extrapolated velocity
   StiffFriction stiff_friction_;
-  AlignedVector<double> velocity_;  // dt v(n-1/2) [m]
+  MatLayout layout_;
+  AlignedVector<double> velocity_;  // dt v(n-1/2), 4 x N [m]
 };
 
 }  // namespace cordis::engine

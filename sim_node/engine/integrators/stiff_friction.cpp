@@ -257,7 +257,7 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
   solved.axis = is_1d_ ? Vec3(Vec3::UnitX()) : Vec3(along / length);
   const auto extrapolated = [&](std::uint32_t mat) {
     return Vec3(world.mats.position(mat) -
-                Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
+                world.mats.layout().vector(around.extrapolated.data(), mat));
   };
   solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
   TensionOverSpeed curve(world, solved.link);
@@ -284,7 +284,7 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
     if (!world.mats.is_mass(mat)) return moving;
     Vec3 force = world.mats.force(mat) + world.outside.external_force(mat);
     force += world.mats.force_of_medium(
-        mat, Vec3::Map(around.extrapolated.data() + 4 * std::size_t{mat}));
+        mat, world.mats.layout().vector(around.extrapolated.data(), mat));
     moving += part * world.mats.pushed_by(mat, force);
     return moving;
   };

@@ -52,7 +52,7 @@ class StiffFriction {
   /// Notes the tensions of the last step. Before the forces of a step are computed.
   void begin_step(const WorldState& world) noexcept;
   /// Replaces the tensions of these links, computed with the extrapolated speed, by the solved ones.
-  /// @param extrapolated     x(n) - dt v(n), extrapolated, 4 x N [m]
+  /// @param extrapolated     x(n) - dt v(n), extrapolated, stored as the MATs are [m]
   /// @param damping  of the linear links, its step begun; null: they are among the forces
   /// @param started  a step has been done
   /// @return half of what that changes in the energy that viscosity takes in a period [J]

@@ -98,10 +98,11 @@ void arrange_links(std::span<const Link> links, std::uint32_t first_link, bool w
 }
 
 MatLayout layout_of(const NetworkDescription& description) {
+  const bool moves_by_axis = description.integrator == IntegratorKind::kCordis ||
+                             description.integrator == IntegratorKind::kLeapfrog;
   const bool reads_columns =
-      description.integrator != IntegratorKind::kCordis || description.freeze_tolerance > 0.0 ||
-      !description.state_links.empty() || !description.maxwell_links.empty() ||
-      !description.bends.empty() || !description.sets.empty();
+      !moves_by_axis || description.freeze_tolerance > 0.0 || !description.state_links.empty() ||
+      !description.maxwell_links.empty() || !description.bends.empty() || !description.sets.empty();
   if (reads_columns) return {};
   const std::size_t in_runs = linear_links_in_runs(description.links);
   const bool most = in_runs > 0 && 4 * in_runs >= 3 * description.links.size();

@@ -46,8 +46,8 @@ void arrange_links(std::span<const Link> links, std::uint32_t first_link, bool w
                    std::size_t last_mat, LinkArrangement& rows);
 
 /// By axis where nothing but linear links reads the arrays of the MATs, and most links are in runs: a
-/// world of `cordis` without states, sets, Maxwell elements and freezing. By MAT else. It depends on
-/// the structure of the network, on no parameter.
+/// world of `cordis` or `leapfrog` without states, sets, Maxwell elements, bends and freezing. By MAT
+/// else. It depends on the structure of the network, on no parameter.
 MatLayout layout_of(const NetworkDescription& description);
 
 }  // namespace cordis::engine

@@ -217,15 +217,10 @@ StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces, const ForceColu
   return half_of(work);
 }
 
-StepEnergy SpringDamperArray::add_by_axis(const StepKernel& kernel,
+StepEnergy SpringDamperArray::add_by_axis(AddLinkForces gathered, const RunLoops& loops,
                                           const ForceColumns& rows_of_mats,
                                           ThreadTeam& team) noexcept {
   if (column_a_.empty()) return {};
-  const AddLinkForces gathered_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
-  const AddLinkForces gathered_nd =
-      viscous_ ? kernel.gathered_spring_dampers_by_axis : kernel.gathered_springs_by_axis;
-  const AddLinkForces gathered = is_1d_ ? gathered_1d : gathered_nd;
-  const RunLoops& loops = kernel.runs[dimension_ - 1];
   const AddRunForces chained = viscous_ ? loops.chained_spring_dampers : loops.chained_springs;
   const AddRunForces along = viscous_ ? loops.spring_dampers : loops.springs;
 
@@ -243,8 +238,13 @@ StepEnergy SpringDamperArray::add_by_axis(const StepKernel& kernel,
 
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel, const ForceColumns& columns,
                                          ThreadTeam& team) noexcept {
-  if (layout_.is_by_axis()) return add_by_axis(kernel, columns, team);
   const AddLinkForces forces_1d = viscous_ ? kernel.spring_dampers_1d : kernel.springs_1d;
+  if (layout_.is_by_axis()) {
+    const AddLinkForces gathered_nd =
+        viscous_ ? kernel.gathered_spring_dampers_by_axis : kernel.gathered_springs_by_axis;
+    return add_by_axis(is_1d_ ? forces_1d : gathered_nd, kernel.runs[dimension_ - 1], columns,
+                       team);
+  }
   const AddLinkForces forces_nd = viscous_ ? kernel.spring_dampers_3d : kernel.springs_3d;
   return add(is_1d_ ? forces_1d : forces_nd, columns, team);
 }
@@ -253,9 +253,18 @@ StepEnergy SpringDamperArray::add_forces_at_full_step(const StepKernel& kernel,
                                                       const ForceColumns& columns,
                                                       ThreadTeam& team) noexcept {
   const AddLinkForces forces_1d = viscous_ ? kernel.moment_spring_dampers_1d : kernel.springs_1d;
-  const AddLinkForces forces_nd =
-      viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
-  return {0.0, 2.0 * add(is_1d_ ? forces_1d : forces_nd, columns, team).dissipated, 0.0, 0.0};
+  StepEnergy halves;
+  if (layout_.is_by_axis()) {
+    const AddLinkForces gathered_nd = viscous_ ? kernel.moment_gathered_spring_dampers_by_axis
+                                               : kernel.moment_gathered_springs_by_axis;
+    halves = add_by_axis(is_1d_ ? forces_1d : gathered_nd, kernel.moment_runs[dimension_ - 1],
+                         columns, team);
+  } else {
+    const AddLinkForces forces_nd =
+        viscous_ ? kernel.moment_spring_dampers_3d : kernel.moment_springs_3d;
+    halves = add(is_1d_ ? forces_1d : forces_nd, columns, team);
+  }
+  return {0.0, 2.0 * halves.dissipated, 0.0, 0.0};
 }
 
 void SpringDamperArray::mark_neighbours(const WakePropagation& pass,

@@ -44,7 +44,6 @@ class SpringDamperArray {
 
   /// Adds the forces for an account at full steps: only the energy [J] that the viscous forces
   /// take in a period at the velocity (x - delayed) / dt is returned, and nothing remembered.
-  /// Precondition: the arrays are stored by MAT.
   StepEnergy add_forces_at_full_step(const StepKernel& kernel, const ForceColumns& columns,
                                      ThreadTeam& team) noexcept;
 
@@ -91,7 +90,7 @@ class SpringDamperArray {
   RunRows rows(std::size_t run) noexcept;
   StepEnergy add(AddLinkForces add_link_forces, const ForceColumns& columns,
                  ThreadTeam& team) noexcept;
-  StepEnergy add_by_axis(const StepKernel& kernel, const ForceColumns& rows,
+  StepEnergy add_by_axis(AddLinkForces gathered, const RunLoops& loops, const ForceColumns& rows,
                          ThreadTeam& team) noexcept;
   template <class AddGroup>
   StepEnergy add_groups(ThreadTeam& team, const AddGroup& add_group) noexcept;

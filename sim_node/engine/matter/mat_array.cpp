@@ -23,7 +23,8 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
       weight_step_(description.gravity * description.step * description.step),
       medium_viscosity_over_dt_(description.medium_viscosity / description.step),
       in_medium_(description.has_medium()) {
-  CORDIS_ASSERT(!layout.is_by_axis() || description.integrator == IntegratorKind::kCordis);
+  CORDIS_ASSERT(!layout.is_by_axis() || description.integrator == IntegratorKind::kCordis ||
+                description.integrator == IntegratorKind::kLeapfrog);
   const double dt = description.step;
 
   std::vector<Range> masses;
@@ -174,10 +175,13 @@ AdvanceReport MatArray::advance(const StepKernel& kernel, ThreadTeam& team) noex
 
 AdvanceReport MatArray::extrapolate(const StepKernel& kernel, AlignedVector<double>& extrapolated,
                                     ThreadTeam& team) noexcept {
+  CORDIS_ASSERT(extrapolated.size() >= position_.size());
+  const Advance by_axis =
+      in_medium_ ? kernel.extrapolate_by_axis_in_medium : kernel.extrapolate_by_axis;
+  const Advance by_mat = in_medium_ ? kernel.extrapolate_in_medium : kernel.extrapolate;
   bool all_finite = true;
-  AdvanceReport report =
-      advance_rows(in_medium_ ? kernel.extrapolate_in_medium : kernel.extrapolate,
-                   extrapolated.data(), 1.0, team, all_finite);
+  AdvanceReport report = advance_rows(layout_.is_by_axis() ? by_axis : by_mat, extrapolated.data(),
+                                      1.0, team, all_finite);
   if (!all_finite) report.non_finite_mats = count_non_finite();
   return report;
 }
@@ -303,7 +307,9 @@ double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
 }
 
 void MatArray::add_forces(const AlignedVector<double>& more) noexcept {
-  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] += more[i];
+  for (std::uint32_t i = 0; i < count(); ++i) {
+    set(force_, i, force(i) + Vec3::Map(more.data() + 4 * std::size_t{i}));
+  }
 }
 
 void MatArray::set_delayed(std::uint32_t mat, const Vec3& position) noexcept {

@@ -38,8 +38,8 @@ struct AdvanceReport {
 ///
 /// Masses move by this law, fixed points never, port masses by move_port alone. Positions, delayed
 /// positions, forces and carried displacements are stored as their MatLayout says; every other array
-/// named here is 4 x N, column i belonging to MAT i. By axis, only `cordis` moves them. Source:
-/// [Luc90 III.2.1 Matter modelisation].
+/// named here is 4 x N, column i belonging to MAT i. By axis, only `cordis` and `leapfrog` move them.
+/// Source: [Luc90 III.2.1 Matter modelisation].
 class MatArray {
  public:
   /// Positions of step 0; delayed positions one period at the velocity v0 before them.
@@ -76,7 +76,7 @@ class MatArray {
   [[nodiscard]] AdvanceReport advance(const StepKernel& kernel, ThreadTeam& team) noexcept;
 
   /// Moves every mass by one step of `leapfrog`; see StepKernel::extrapolate.
-  /// @param extrapolated  4 x N, x(n) - dt v(n), then that of the next step
+  /// @param extrapolated  as the MatLayout says, x(n) - dt v(n), then that of the next step
   [[nodiscard]] AdvanceReport extrapolate(const StepKernel& kernel,
                                           AlignedVector<double>& extrapolated,
                                           ThreadTeam& team) noexcept;

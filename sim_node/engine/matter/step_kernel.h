@@ -123,11 +123,9 @@ using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocit
                                 double dt) noexcept;
 
 /// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
-/// `dissipated` the viscous power of these forces times dt, once. The last two keep in
+/// `dissipated` the viscous power of these forces times dt, once. Those that extrapolate keep in
 /// `extrapolated` the velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2):
-/// x(n+1) = x(n) + (x(n)
-/// - x(n-1)) + (dt^2 / m) f(n)
-/// + gravity dt^2 - (1 - velocity retention) dt v(n).
+/// x(n+1) = x(n) + (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2 - (1 - velocity retention) dt v(n).
 struct StepKernel {
   AddLinkForces springs_1d = nullptr;  // no link has viscosity; distances are signed
   AddLinkForces spring_dampers_1d = nullptr;
@@ -138,7 +136,10 @@ struct StepKernel {
   AddLinkForces moment_spring_dampers_3d = nullptr;
   AddLinkForces gathered_springs_by_axis = nullptr;  // in 2 and 3 dimensions; in 1 as by MAT
   AddLinkForces gathered_spring_dampers_by_axis = nullptr;
+  AddLinkForces moment_gathered_springs_by_axis = nullptr;
+  AddLinkForces moment_gathered_spring_dampers_by_axis = nullptr;
   RunLoops runs[3];           // of 1, 2 and 3 dimensions
+  RunLoops moment_runs[3];    // of the same
   Advance advance = nullptr;  // without a medium: velocity retention is not read, moved_product
                               // stays 0
   Advance advance_in_medium = nullptr;
@@ -146,6 +147,8 @@ struct StepKernel {
   Advance advance_by_axis_in_medium = nullptr;
   Advance extrapolate = nullptr;  // of `leapfrog`
   Advance extrapolate_in_medium = nullptr;
+  Advance extrapolate_by_axis = nullptr;
+  Advance extrapolate_by_axis_in_medium = nullptr;
   Kick kick = nullptr;
   Kick kick_and_drift = nullptr;
   Delay delay = nullptr;

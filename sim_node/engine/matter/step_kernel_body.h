@@ -148,6 +148,12 @@ struct EndsByAxis {
       before[axis] = Lanes::difference_1d(rows.delayed + axis * rows.axis_stride, a, b);
     }
   }
+  static void find(const ForceColumns& rows, const std::uint32_t* a, const std::uint32_t* b,
+                   Row* along) noexcept {
+    for (int axis = 0; axis < 3; ++axis) {
+      along[axis] = Lanes::difference_1d(rows.position + axis * rows.axis_stride, a, b);
+    }
+  }
   static void add(const ForceColumns& rows, const std::uint32_t* a, const std::uint32_t* b,
                   const Row* along, Row factor) noexcept {
     for (int axis = 0; axis < 3; ++axis) {
@@ -234,33 +240,45 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
   return AdvanceResult{Lanes::sum_column(product), Lanes::is_zero(nonfinite)};
 }
 
-/// The masses of one axis; 8 of them at a time, then those that are left.
+/// What moves the masses of one axis gathers over them.
+template <class Lanes>
+struct AxisSums {
+  static constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+
+  typename Lanes::Row product[kParts];  // by the place in the batch
+  typename Lanes::Row nonfinite;        // 0 for finite values, else NaN
+};
+
+/// The masses of one axis move as Advance says.
 template <class Lanes, bool kMedium>
 struct AxisAdvance {
   using Row = typename Lanes::Row;
-  static constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
 
   const double* position;
   double* delayed;
   double* moved;
   const double* force;
   double weight_step;
-  Row product[kParts];  // by the place in the batch
-  Row nonfinite;        // 0 for finite values, else NaN
 
-  void step(const MassColumns& masses, std::size_t i, std::size_t part) noexcept {
+  static AxisAdvance of_axis(const MassColumns& masses, std::size_t axis) noexcept {
+    const std::size_t row = axis * masses.axis_stride;
+    return {masses.position + row, masses.delayed + row, masses.moved + row, masses.force + row,
+            masses.weight_step[axis]};
+  }
+  void step(const MassColumns& masses, std::size_t i, std::size_t part,
+            AxisSums<Lanes>& sums) noexcept {
     const Row before = Lanes::load_any(moved + i);
     const Row pushed = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
                        Lanes::every(weight_step);
     Row moving = before + pushed;
     if constexpr (kMedium) {
       moving = before * Lanes::load_any(masses.velocity_retention + i) + pushed;
-      product[part] = product[part] + before * (before + moving);
+      sums.product[part] = sums.product[part] + before * (before + moving);
     }
     const Row next = Lanes::load_any(position + i) + moving;
     Lanes::store_any(delayed + i, next);
     Lanes::store_any(moved + i, moving);
-    nonfinite = nonfinite + (next - next);  // NOLINT(misc-redundant-expression)
+    sums.nonfinite = sums.nonfinite + (next - next);  // NOLINT(misc-redundant-expression)
   }
   /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
   double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
@@ -278,34 +296,85 @@ struct AxisAdvance {
   }
 };
 
+/// The masses of one axis move as StepKernel says of those that extrapolate.
 template <class Lanes, bool kMedium>
-AdvanceResult advance_masses_by_axis(const MassColumns& masses) noexcept {
-  constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
+struct AxisExtrapolation {
+  using Row = typename Lanes::Row;
+
+  double* position;
+  double* delayed;
+  double* extrapolated;
+  const double* force;
+  double weight_step;
+
+  static AxisExtrapolation of_axis(const MassColumns& masses, std::size_t axis) noexcept {
+    const std::size_t row = axis * masses.axis_stride;
+    return {masses.position + row, masses.delayed + row, masses.extrapolated + row,
+            masses.force + row, masses.weight_step[axis]};
+  }
+  void step(const MassColumns& masses, std::size_t i, std::size_t part,
+            AxisSums<Lanes>& sums) noexcept {
+    const Row now = Lanes::load_any(position + i);
+    const Row moved = now - Lanes::load_any(delayed + i);
+    Row pushed = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
+                 Lanes::every(weight_step);
+    if constexpr (kMedium) {
+      const Row seen = now - Lanes::load_any(extrapolated + i);
+      const Row retention = Lanes::load_any(masses.velocity_retention + i);
+      pushed = pushed - seen * (Lanes::every(1.0) - retention);
+      sums.product[part] = sums.product[part] + seen * seen;
+    }
+    const Row next = now + (moved + pushed);
+    Lanes::store_any(delayed + i, now);
+    Lanes::store_any(position + i, next);
+    Lanes::store_any(extrapolated + i, now - Lanes::every(0.5) * pushed);
+    sums.nonfinite = sums.nonfinite + (next - next);  // NOLINT(misc-redundant-expression)
+  }
+  /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
+  double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
+    const double now = position[i];
+    const double moved = now - delayed[i];
+    double pushed = force[i] * masses.dt2_over_mass[i] + weight_step;
+    if constexpr (kMedium) {
+      const double seen = now - extrapolated[i];
+      pushed = pushed - seen * (1.0 - masses.velocity_retention[i]);
+      in_place = in_place + seen * seen;
+    }
+    const double next = now + (moved + pushed);
+    delayed[i] = now;
+    position[i] = next;
+    extrapolated[i] = now - 0.5 * pushed;
+    return next - next;  // NOLINT(misc-redundant-expression)
+  }
+};
+
+/// Axis by axis; 8 masses at a time, then those that are left.
+template <class Lanes, class Axis>
+AdvanceResult move_masses_by_axis(const MassColumns& masses) noexcept {
+  constexpr std::size_t kParts = AxisSums<Lanes>::kParts;
   AdvanceResult result;
   for (std::size_t axis = 0; axis < masses.axis_count; ++axis) {
-    const std::size_t row = axis * masses.axis_stride;
-    AxisAdvance<Lanes, kMedium> advance{
-        masses.position + row, masses.delayed + row,     masses.moved + row,
-        masses.force + row,    masses.weight_step[axis], {},
-        Lanes::zero()};
-    for (std::size_t part = 0; part < kParts; ++part) advance.product[part] = Lanes::zero();
+    Axis moves = Axis::of_axis(masses, axis);
+    AxisSums<Lanes> sums;
+    sums.nonfinite = Lanes::zero();
+    for (std::size_t part = 0; part < kParts; ++part) sums.product[part] = Lanes::zero();
     std::size_t i = masses.first;
     for (; i + kLinkBatch <= masses.last; i += kLinkBatch) {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < kParts; ++part) {
-        advance.step(masses, i + part * Lanes::kWidth, part);
+        moves.step(masses, i + part * Lanes::kWidth, part, sums);
       }
     }
 
     alignas(64) double product[kLinkBatch];
     alignas(64) double nonfinite[Lanes::kWidth];
     for (std::size_t part = 0; part < kParts; ++part) {
-      Lanes::store(product + part * Lanes::kWidth, advance.product[part]);
+      Lanes::store(product + part * Lanes::kWidth, sums.product[part]);
     }
-    Lanes::store(nonfinite, advance.nonfinite);
+    Lanes::store(nonfinite, sums.nonfinite);
     double all_nonfinite = 0.0;
     for (std::size_t place = 0; i < masses.last; ++i, ++place) {
-      all_nonfinite += advance.step_one(masses, i, product[place]);
+      all_nonfinite += moves.step_one(masses, i, product[place]);
     }
     for (const double value : nonfinite) all_nonfinite += value;
     for (const double value : product) result.moved_product += value;
@@ -388,10 +457,10 @@ AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, do
 /// order adds its force first: where a is below b the forces on b of a batch precede those on a, and
 /// the other way round. In a chain, b = a + 1, each MAT is read and written once: the force of the
 /// link before comes from a register.
-template <class Lanes, int kAxes, bool kViscous, bool kChained>
+template <class Lanes, int kAxes, Works kWorks, bool kViscous, bool kChained>
 struct RunLoop {
   using Row = typename Lanes::Row;
-  using Tension = TensionNd<Lanes, kAxes, kViscous, Works::kHalfStep>;
+  using Tension = TensionNd<Lanes, kAxes, kViscous, kWorks>;
   static constexpr std::size_t kParts = kLinkBatch / Lanes::kWidth;
   static constexpr std::uint32_t kAllRows = (1U << kLinkBatch) - 1U;
 
@@ -406,9 +475,13 @@ struct RunLoop {
     if constexpr (kViscous) {
       const Row elongation_increment = along - before;
       const Row viscous_tension = parameters.viscosity_over_dt * elongation_increment;
-      work.dissipated =
-          work.dissipated + (viscous_tension + Lanes::load(factors.viscous)) * elongation_increment;
-      Lanes::store(factors.viscous, viscous_tension);
+      if constexpr (kWorks == Works::kHalfStep) {
+        work.dissipated = work.dissipated +
+                          (viscous_tension + Lanes::load(factors.viscous)) * elongation_increment;
+        Lanes::store(factors.viscous, viscous_tension);
+      } else {
+        work.dissipated = work.dissipated + viscous_tension * elongation_increment;
+      }
       tension = tension + viscous_tension;
     }
     return tension;
@@ -523,38 +596,44 @@ struct RunLoop {
   }
 };
 
-template <class Lanes, int kAxes>
+template <class Lanes, int kAxes, Works kWorks>
 constexpr RunLoops make_run_loops() noexcept {
-  return {RunLoop<Lanes, kAxes, false, false>::add_forces,
-          RunLoop<Lanes, kAxes, true, false>::add_forces,
-          RunLoop<Lanes, kAxes, false, true>::add_forces,
-          RunLoop<Lanes, kAxes, true, true>::add_forces};
+  return {RunLoop<Lanes, kAxes, kWorks, false, false>::add_forces,
+          RunLoop<Lanes, kAxes, kWorks, true, false>::add_forces,
+          RunLoop<Lanes, kAxes, kWorks, false, true>::add_forces,
+          RunLoop<Lanes, kAxes, kWorks, true, true>::add_forces};
 }
 
 template <class Lanes>
 constexpr StepKernel make_step_kernel() noexcept {
   constexpr Works kHalf = Works::kHalfStep;
   constexpr Works kFull = Works::kFullStep;
-  return StepKernel{
-      add_link_forces<Lanes, Links1d<Lanes, false, kHalf>>,
-      add_link_forces<Lanes, Links1d<Lanes, true, kHalf>>,
-      add_link_forces<Lanes, LinksNd<Lanes, false, kHalf>>,
-      add_link_forces<Lanes, LinksNd<Lanes, true, kHalf>>,
-      add_link_forces<Lanes, Links1d<Lanes, true, kFull>>,
-      add_link_forces<Lanes, LinksNd<Lanes, false, kFull>>,
-      add_link_forces<Lanes, LinksNd<Lanes, true, kFull>>,
-      add_link_forces<Lanes, LinksNd<Lanes, false, kHalf, EndsByAxis<Lanes>>>,
-      add_link_forces<Lanes, LinksNd<Lanes, true, kHalf, EndsByAxis<Lanes>>>,
-      {make_run_loops<Lanes, 1>(), make_run_loops<Lanes, 2>(), make_run_loops<Lanes, 3>()},
-      advance_masses<Lanes, false>,
-      advance_masses<Lanes, true>,
-      advance_masses_by_axis<Lanes, false>,
-      advance_masses_by_axis<Lanes, true>,
-      extrapolate_masses<Lanes, false>,
-      extrapolate_masses<Lanes, true>,
-      kick_masses<Lanes, false>,
-      kick_masses<Lanes, true>,
-      delay_masses<Lanes>};
+  return StepKernel{add_link_forces<Lanes, Links1d<Lanes, false, kHalf>>,
+                    add_link_forces<Lanes, Links1d<Lanes, true, kHalf>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kHalf>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kHalf>>,
+                    add_link_forces<Lanes, Links1d<Lanes, true, kFull>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kFull>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kFull>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kHalf, EndsByAxis<Lanes>>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kHalf, EndsByAxis<Lanes>>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, false, kFull, EndsByAxis<Lanes>>>,
+                    add_link_forces<Lanes, LinksNd<Lanes, true, kFull, EndsByAxis<Lanes>>>,
+                    {make_run_loops<Lanes, 1, kHalf>(), make_run_loops<Lanes, 2, kHalf>(),
+                     make_run_loops<Lanes, 3, kHalf>()},
+                    {make_run_loops<Lanes, 1, kFull>(), make_run_loops<Lanes, 2, kFull>(),
+                     make_run_loops<Lanes, 3, kFull>()},
+                    advance_masses<Lanes, false>,
+                    advance_masses<Lanes, true>,
+                    move_masses_by_axis<Lanes, AxisAdvance<Lanes, false>>,
+                    move_masses_by_axis<Lanes, AxisAdvance<Lanes, true>>,
+                    extrapolate_masses<Lanes, false>,
+                    extrapolate_masses<Lanes, true>,
+                    move_masses_by_axis<Lanes, AxisExtrapolation<Lanes, false>>,
+                    move_masses_by_axis<Lanes, AxisExtrapolation<Lanes, true>>,
+                    kick_masses<Lanes, false>,
+                    kick_masses<Lanes, true>,
+                    delay_masses<Lanes>};
 }
 
 }  // namespace cordis::engine
