@@ -30,7 +30,8 @@ class SceneWriter {
         random_of_lively_laws_(seed ^ 0x7feb352dU),
         random_of_crowds_(seed ^ 0xd6e8feb8U),
         random_of_fields_(seed ^ 0xc2b2ae35U),
-        random_of_bodies_(seed ^ 0x165667b1U) {
+        random_of_bodies_(seed ^ 0x165667b1U),
+        random_of_shells_(seed ^ 0x27d4eb2fU) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -53,6 +54,7 @@ class SceneWriter {
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     if (matter_ != Matter::kModes) perhaps_add_body();
+    if (space_ > 1) perhaps_add_shell();
     return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
   lively: {quantity: kinetic_energy}
@@ -758,7 +760,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return text + "]";
   }
 
-  /// In a tenth of the scenes a string, a net, a crystal, a beam, a skin or a pack of balls, of up to 27 MATs, that
+  /// In a tenth of the scenes a string, a net, a crystal, a beam or a pack of balls, of up to 27 MATs, that
   /// touches the masses or hangs on one.
   void perhaps_add_body() {
     const double choice = body_between(0.0, 1.0);
@@ -816,6 +818,108 @@ step: {{rate_hz: {}, integrator: {}{}}}
     }
     if (links.empty())
       links_ += "  - {liaison: of_body, within: more, rest: radii, range_m: 0.02}\n";
+  }
+
+  double shell_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_shells_()) / 4294967296.0;
+  }
+  double shell_decades(double low, double high) {
+    return low * std::pow(high / low, shell_between(0.0, 1.0));
+  }
+
+  /// A point in front of the masses.
+  std::string shell_point(double x, double y) const {
+    return space_ == 2 ? fmt::format("[{:.4g}, {:.4g}]", x, y)
+                       : fmt::format("[{:.4g}, {:.4g}, 0.05]", x, y);
+  }
+
+  /// Stiffness and perhaps viscosity of the links that matter makes. @param prefix  of the keys
+  std::string shell_links(const std::string& prefix) {
+    const double stiffness = shell_decades(5.0, 3000.0);
+    const double viscosity = shell_decades(1e-4, 1.0);
+    const bool is_viscous = matter_ == Matter::kAnything && shell_between(0.0, 1.0) < 0.6;
+    std::string text = fmt::format(", {}stiffness_n_per_m: {:.4g}", prefix, stiffness);
+    if (is_viscous) text += fmt::format(", {}viscosity_n_s_per_m: {:.4g}", prefix, viscosity);
+    return text;
+  }
+
+  /// A circle, a polygon or a sphere of 12 or 42 MATs, perhaps braced, perhaps with a core.
+  std::string skin() {
+    const double radius = shell_between(0.03, 0.1);
+    const double x = shell_between(0.15, 0.3);
+    const double y = shell_between(-0.1, 0.1);
+    std::string text = "kind: skin, ";
+    if (space_ == 3) {
+      text += fmt::format("center_m: {}, radius_m: {:.4g}, subdivisions: {}", shell_point(x, y),
+                          radius, shell_between(0.0, 1.0) < 0.2 ? 1 : 0);
+    } else if (shell_between(0.0, 1.0) < 0.6) {
+      const auto count = static_cast<int>(shell_between(3.0, 17.0));
+      text += fmt::format("center_m: {}, radius_m: {:.4g}, count: {}", shell_point(x, y), radius,
+                          count);
+    } else {
+      const double lean = shell_between(-1.0, 1.0);
+      text += fmt::format("corners_m: [{}, {}, {}, {}], spacing_m: {:.4g}", shell_point(x, y),
+                          shell_point(x + radius, y + 0.3 * lean * radius),
+                          shell_point(x + 1.4 * radius, y + radius), shell_point(x, y + radius),
+                          shell_between(0.3, 1.0) * radius);
+    }
+    text += fmt::format(", mass_kg: {:.4g}", shell_decades(0.001, 0.05)) + shell_links("");
+    if (shell_between(0.0, 1.0) < 0.2)
+      text += fmt::format(", tension_n: {:.4g}", shell_decades(0.001, 0.1));
+    if (shell_between(0.0, 1.0) < 0.5) text += shell_links("shear_");
+    if (shell_between(0.0, 1.0) < 0.4) {
+      const double mass = shell_decades(0.001, 0.1);
+      text += fmt::format(", core: {{mass_kg: {:.4g}{}}}", mass, shell_links(""));
+    }
+    return text;
+  }
+
+  /// A disc of triangles or of rings with its own links, of masses or of balls.
+  std::string disc() {
+    const double spacing = shell_between(0.02, 0.05);
+    const double x = shell_between(0.15, 0.3);
+    const double y = shell_between(-0.1, 0.1);
+    const double mass = shell_decades(0.001, 0.05);
+    const bool of_rings = shell_between(0.0, 1.0) < 0.5;
+    const bool of_balls = shell_between(0.0, 1.0) < 0.5;
+    const double radius = spacing * (shell_between(1.05, 2.5) + (of_balls ? 0.5 : 0.0));
+    std::string text = fmt::format("kind: disc, center_m: {}, radius_m: {:.4g}, spacing_m: {:.4g}",
+                                   shell_point(x, y), radius, spacing);
+    if (of_rings) text += ", structure: rings";
+    if (space_ == 3 && shell_between(0.0, 1.0) < 0.5) text += ", plane: yz";
+    text += of_balls
+                ? fmt::format(", ball: {{mass_kg: {:.4g}, radius_m: {:.4g}}}", mass, 0.5 * spacing)
+                : fmt::format(", mass_kg: {:.4g}", mass);
+    text += shell_links("");
+    if (!of_rings && shell_between(0.0, 1.0) < 0.4) text += shell_links("shear_");
+    return text;
+  }
+
+  /// In a tenth of the scenes a skin or a disc, of up to 43 MATs, which moves, turns, and touches the masses or
+  /// hangs on one.
+  void perhaps_add_shell() {
+    if (shell_between(0.0, 1.0) > 0.1) return;
+    std::string body = shell_between(0.0, 1.0) < 0.5 ? skin() : disc();
+    const double speed = shell_between(-0.3, 0.3);
+    if (shell_between(0.0, 1.0) < 0.5) {
+      body += fmt::format(", velocity_m_per_s: [{:.4g}, 0{}]", speed, space_ == 3 ? ", 0" : "");
+      const double turn = shell_between(-5.0, 5.0);
+      if (shell_between(0.0, 1.0) < 0.5) {
+        body += space_ == 2 ? fmt::format(", spin_rad_per_s: {:.4g}", turn)
+                            : fmt::format(", spin_rad_per_s: [1, {:.4g}, 0]", turn);
+      }
+    }
+    masses_ += "  shell: {" + body + "}\n";
+    liaisons_ += fmt::format(
+        "  of_shell: {{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}\n",
+        shell_decades(5.0, 3000.0));
+    if (shell_between(0.0, 1.0) < 0.5) {
+      links_ += "  - {liaison: of_shell, between_sets: [p, shell], rest_m: 0.05, range_m: 0.05}\n";
+    } else {
+      links_ += fmt::format(
+          "  - {{liaison: of_shell, between: [\"p[0]\", \"shell[1]\"], rest_m: {:.4g}}}\n",
+          shell_between(0.05, 0.3));
+    }
   }
 
   void add_set() {
@@ -952,6 +1056,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_crowds_;       // likewise
   std::mt19937 random_of_fields_;       // likewise
   std::mt19937 random_of_bodies_;       // likewise
+  std::mt19937 random_of_shells_;       // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses
