@@ -287,7 +287,12 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
   double at_begin = energy_of_limited_spring(term, begin - rest_length);
   if (is_of_distance && pulls) at_begin += potential(law, {begin});  // else no force takes it away
-  return at_begin + integral_over_distance(tension, begin, link.distance);
+  // Beyond the range of a law its side ends where the spring has its rest length: the rule cannot see a corner
+  // near an end.
+  const bool passes_rest = (rest_length - begin) * (rest_length - link.distance) < 0.0;
+  const double corner = passes_rest ? rest_length : begin;
+  return at_begin + integral_over_distance(tension, begin, corner) +
+         integral_over_distance(tension, corner, link.distance);
 }
 
 double StateTable::change_energy(const StateMachineRows& rows, std::size_t row) const noexcept {
