@@ -11,6 +11,7 @@
 #include "node/config/launch.h"
 #include "node/last_take.h"
 #include "node/runtime_folder.h"
+#include "node/security/keyring.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
 
@@ -47,44 +48,78 @@ void prefer_launch_file(std::vector<node::SessionRecord>& sessions, const std::s
     std::erase_if(sessions, std::not_fn(is_of_file));
 }
 
-/// The network of the session that runs in the domain of the launch, else what the launch means
-/// here.
+/// The session that runs in the domain of the launch; none of this host else.
 /// @param is_any  whichever session of the domain
-dds::Network network_in(const std::vector<node::SessionRecord>& running,
-                        const config::Launch& launch, bool is_any) {
+std::optional<node::SessionRecord> found_in(const std::vector<node::SessionRecord>& running,
+                                            const config::Launch& launch, bool is_any) {
   for (const node::SessionRecord& record : running) {
     if (record.domain == *launch.domain && (is_any || record.session == launch.session))
-      return record.network;
+      return record;
   }
-  config::Problems problems;
-  dds::Network network = node::network_of(launch, problems);
-  problems.throw_if_any();
-  return network;
+  return std::nullopt;
 }
 
-}  // namespace
+/// The network of the session that runs in the domain of the launch, else what the launch means
+/// here; likewise its keyring.
+SessionAddress address_in(const std::vector<node::SessionRecord>& running,
+                          const config::Launch& launch, const std::string& file, bool is_any) {
+  const auto found = found_in(running, launch, is_any);
+  if (found) return {launch.session, *launch.domain, file, found->network, found->keyring};
+  config::Problems problems;
+  const dds::Network network = node::network_of(launch, problems);
+  problems.throw_if_any();
+  return {launch.session, *launch.domain, file, network, node::keyring_of(launch)};
+}
 
-SessionAddress address_of(const std::string& named, const std::string& domain,
-                          const std::string& name, bool is_any) {
+SessionAddress address_without_option(const std::string& named, const std::string& domain,
+                                      const std::string& name, bool is_any) {
   const config::Launch launch = launch_of(named, domain, name);
   const std::string file = is_file(named) ? named : "";
   std::vector<node::SessionRecord> running = node::running_sessions(node::runtime_folder());
-  if (!domain.empty())
-    return {launch.session, *launch.domain, file, network_in(running, launch, is_any)};
+  if (!domain.empty()) return address_in(running, launch, file, is_any);
   std::erase_if(running, [&](const auto& record) { return record.session != launch.session; });
   if (is_file(named)) prefer_launch_file(running, named);
   if (running.size() == 1)
-    return {launch.session, running[0].domain, running[0].launch_file, running[0].network};
+    return {launch.session, running[0].domain, running[0].launch_file, running[0].network,
+            running[0].keyring};
   if (running.size() > 1)
     throw std::runtime_error("session '" + launch.session + "' runs in " +
                              node::domains_text(running) + ": name one with --domain");
-  if (launch.domain)
-    return {launch.session, *launch.domain, file, network_in(running, launch, is_any)};
+  if (launch.domain) return address_in(running, launch, file, is_any);
   const std::optional<std::filesystem::path> take =
       node::last_take(node::runtime_folder(), launch.session);
   throw std::runtime_error("no session '" + launch.session +
                            "' runs on this host: start it with `cordis run`, or name its --domain" +
                            (take ? "; its last take is " + take->string() : std::string()));
+}
+
+}  // namespace
+
+SessionAddress address_of(const std::string& named, const std::string& domain,
+                          const std::string& name, bool is_any, const std::string& keyring) {
+  SessionAddress address = address_without_option(named, domain, name, is_any);
+  if (!keyring.empty()) address.keyring = keyring;
+  return address;
+}
+
+std::optional<node::Identity> identity_for(const SessionAddress& address, node::Role role) {
+  if (address.keyring.empty()) return std::nullopt;
+  return node::identity_in(
+      address.keyring,
+      {role, node::Role::kController, node::Role::kView, node::Role::kViewThatCommands}, "");
+}
+
+dds::Security security_for(const SessionAddress& address, node::Role role) {
+  const std::optional<node::Identity> identity = identity_for(address, role);
+  return identity ? identity->security : dds::Security{};
+}
+
+std::optional<node::SessionKey> command_key_of(const SessionAddress& address) {
+  if (auto key = node::key_of_session(address.session, address.domain)) return key;
+  if (address.keyring.empty()) return std::nullopt;
+  const std::filesystem::path file = node::SharedKeyFiles(address.keyring).command_key;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return node::read_key_file(file);
 }
 
 }  // namespace cordis::cli

@@ -13,14 +13,15 @@ struct SessionWords {
   std::string session;
   std::string domain;
   std::string name;
+  std::string keyring;
 
   /// @throws UsageError when nothing is named, else as address_of(). The session is empty for a
   /// whole domain.
   SessionAddress address() const {
-    if (!session.empty()) return address_of(session, domain, name);
+    if (!session.empty()) return address_of(session, domain, name, /*is_any=*/false, keyring);
     if (domain.empty())
       throw UsageError("which session? name one, or a whole domain with --domain");
-    SessionAddress address = address_of("any", domain, "", /*is_any=*/true);
+    SessionAddress address = address_of("any", domain, "", /*is_any=*/true, keyring);
     address.session.clear();
     return address;
   }
@@ -37,6 +38,8 @@ inline void add_session_options(Verb& verb, SessionWords& words) {
               "DDS domain, for a session that another user or host began");
   verb.option("--session", "NAME", words.name,
               "Name of the session, when it is not that of the file");
+  verb.option("--security", "FOLDER", words.keyring,
+              "Keys for a secured session that another user or host began");
 }
 
 }  // namespace cordis::cli

@@ -15,6 +15,7 @@ dds::ParticipantConfig member_of(const SessionAddress& address) {
                                 "cordis " + std::to_string(getpid())};
   member.every_partition = address.session.empty();
   member.network = address.network;
+  member.security = security_for(address, node::Role::kController);
   return member;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/get/get_verb.h"
 #include "cli/hz/hz_verb.h"
 #include "cli/info/info_verb.h"
+#include "cli/keys/keys_verb.h"
 #include "cli/lab/lab_verb.h"
 #include "cli/list/list_verb.h"
 #include "cli/merge/merge_verb.h"
@@ -51,6 +52,7 @@ void add_verbs(CommandLine& line) {
   add_cut_verb(line);
   add_merge_verb(line);
   add_recover_verb(line);
+  add_keys_verb(line);
   add_doctor_verb(line);
   add_bench_verb(line);
   add_lab_verb(line);

@@ -94,6 +94,14 @@ const config::LaunchNode* choose(const config::Launch& launch, const std::string
   return chosen;
 }
 
+/// What a program of the launch file can be in a secured session, the preferred role first.
+std::vector<Role> roles_of(const std::string& program) {
+  if (program == "sim_node") return {Role::kSim};
+  if (program == "device_node") return {Role::kDevice};
+  if (program == "record_node") return {Role::kRecorder};
+  return {Role::kViewThatCommands, Role::kView};
+}
+
 /// Records a node that runs by itself. The launcher has recorded those that it starts, and names
 /// their domain.
 void join_session(NodeStart& start, std::optional<SessionRegistration>& registration) {
@@ -106,10 +114,12 @@ void join_session(NodeStart& start, std::optional<SessionRegistration>& registra
                                         {start.node->name},
                                         /*is_player=*/false,
                                         simulates(start.node->program),
-                                        start.network});
+                                        start.network,
+                                        keyring_of(launch)});
     if (!launch.domain)
       spdlog::info("session '{}' in DDS domain {}", launch.session, registration->domain());
-    const std::string warning = exposure_warning(start.network, registration->domain());
+    const std::string warning =
+        exposure_warning(start.network, registration->domain(), start.identity.has_value());
     if (!warning.empty()) spdlog::warn("{}", warning);
   }
   start.domain = registration ? registration->domain() : *launch.domain;
@@ -126,6 +136,7 @@ dds::ParticipantConfig NodeStart::config() const {
   dds::ParticipantConfig config{domain, launch.session, node->name,
                                 launch.clock == config::Clock::kLockstep, launch.has_standbys()};
   config.network = network;
+  if (identity) config.security = identity->security;
   return config;
 }
 
@@ -159,6 +170,8 @@ int run_and_report(int argc, char** argv, const std::string& kind,
     start.node = choose(start.launch, kind, arguments.name);
     start.network = network_of(start.launch, problems);
     problems.throw_if_any();
+    if (!start.launch.security.empty())
+      start.identity = identity_in(keyring_of(start.launch), roles_of(kind), start.node->name);
     start.check_only = arguments.check_only;
     start.epoch = static_cast<std::uint64_t>(monotonic_nsec());
     install_log(start.node->name);

@@ -9,6 +9,7 @@
 #include "node/config/launch.h"
 #include "node/dds/network.h"
 #include "node/dds/participant.h"
+#include "node/security/identity.h"
 
 namespace cordis::node {
 
@@ -21,7 +22,13 @@ struct NodeStart {
   dds::Network network{};                    ///< what `network:` means on this host
   std::uint64_t epoch = 0;  ///< identifies this life of the process: its start time [ns]
 
-  std::optional<SessionKey> key{};  ///< key of the session, when it has one
+  std::optional<SessionKey> key{};     ///< key of the session, when it has one
+  std::optional<Identity> identity{};  ///< in a secured session
+
+  /// False for a view that has a key to read alone.
+  bool may_command() const noexcept {
+    return !identity || identity->role == Role::kViewThatCommands;
+  }
 
   dds::ParticipantConfig config() const;
   /// Lets pass what may command this node.

@@ -203,11 +203,13 @@ dds::Network network_of_line(const std::string& line) {
   return network;
 }
 
-std::string exposure_warning(const dds::Network& network, int domain) {
+std::string exposure_warning(const dds::Network& network, int domain, bool is_secured) {
   if (network.is_loopback()) return {};
-  return "this session is open to everybody who reaches " + network.address +
-         " (UDP ports of DDS domain " + std::to_string(domain) +
-         "): nothing is encrypted and no password is asked for";
+  const std::string where =
+      network.address + " (UDP ports of DDS domain " + std::to_string(domain) + ")";
+  if (is_secured) return "whoever reaches " + where + " can end a node with a malformed packet";
+  return "this session is open to everybody who reaches " + where +
+         ": nothing is encrypted and no password is asked for";
 }
 
 }  // namespace cordis::node

@@ -34,6 +34,7 @@ std::string network_line(const dds::Network& network);
 dds::Network network_of_line(const std::string& line);
 
 /// What a person must know when a session starts on a network; empty on loopback.
-std::string exposure_warning(const dds::Network& network, int domain);
+/// @param is_secured  its participants have keys
+std::string exposure_warning(const dds::Network& network, int domain, bool is_secured);
 
 }  // namespace cordis::node

@@ -53,6 +53,7 @@ SessionRecord read_record(const fs::path& path) {
     if (word == "session") words >> record.session;
     if (word == "domain") words >> record.domain;
     if (word == "launch_file") std::getline(words, record.launch_file);
+    if (word == "keyring") std::getline(words, record.keyring);
     if (word == "network") {
       std::string network;
       std::getline(words, network);
@@ -92,11 +93,14 @@ void make_key(const fs::path& folder, const SessionRecord& record, bool is_new) 
 void write_record(const fs::path& folder, const SessionRecord& record) {
   std::string launch_file = record.launch_file;
   std::replace(launch_file.begin(), launch_file.end(), '\n', '?');
+  if (record.keyring.find('\n') != std::string::npos)
+    throw std::runtime_error("the path of a folder of keys is one line: " + record.keyring);
   const fs::path draft = folder / "draft";
   std::ofstream file(draft, std::ios::trunc);
   file << "session " << record.session << "\ndomain " << record.domain << "\nlaunch_file "
        << launch_file << '\n';
   if (!record.network.is_loopback()) file << "network " << network_line(record.network) << '\n';
+  if (!record.keyring.empty()) file << "keyring " << record.keyring << '\n';
   for (const SessionMember& member : record.members) {
     file << "member " << member.process;
     for (const std::string& node : member.nodes) file << ' ' << node;
@@ -212,6 +216,18 @@ void refuse_other_network(const SessionRecord& record, const dds::Network& netwo
                            ": give all parts the same network");
 }
 
+/// Processes with keys and processes without do not receive each other.
+void refuse_other_security(const SessionRecord& record, const std::string& keyring) {
+  if (record.keyring.empty() == keyring.empty()) return;
+  const std::string where =
+      "session '" + record.session + "' runs in DDS domain " + std::to_string(record.domain);
+  throw std::runtime_error(keyring.empty()
+                               ? where + " with the keys of " + record.keyring +
+                                     ", and this part of it has none: give it the same `security`"
+                               : where + " without keys, and this part of it has those of " +
+                                     keyring + ": give all parts the same `security`");
+}
+
 }  // namespace
 
 std::vector<SessionRecord> running_sessions(const fs::path& folder) {
@@ -236,7 +252,8 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
   const auto [domain, held] = domain_for(request, records);
   domain_ = domain;
   lock_ = held;
-  SessionRecord record{session_, domain_, request.launch_file, {}, request.network};
+  SessionRecord record{session_, domain_,         request.launch_file,
+                       {},       request.network, request.keyring};
   for (const SessionRecord& other : records) {
     if (other.session == session_ && other.domain == domain_) record = other;
   }
@@ -244,6 +261,7 @@ SessionRegistration::SessionRegistration(fs::path folder, const SessionRequest& 
     if (request.simulates) refuse_beside_a_player(record);
     refuse_same_nodes(record, request.nodes);
     refuse_other_network(record, request.network);
+    refuse_other_security(record, request.keyring);
     if (request.has_key) make_key(folder_, record, record.members.empty());
     record.members.push_back({getpid(), dds::process_identity(), request.nodes, request.is_player});
     write_record(folder_, record);

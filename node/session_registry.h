@@ -30,6 +30,7 @@ struct SessionRecord {
   std::string launch_file;             ///< absolute; of the process that began the session
   std::vector<SessionMember> members;  ///< alive
   dds::Network network{};              ///< network of all its processes on this host
+  std::string keyring{};               ///< absolute folder of its keys; empty: it is not secured
 };
 
 /// The sessions that run, in the order of their names. Removes the files of sessions whose
@@ -50,6 +51,7 @@ struct SessionRequest {
   bool is_player = false;  ///< plays a take: refused with SessionRuns where the session runs
   bool simulates = false;  ///< has a sim_node or a device_node: refused where a take is played
   dds::Network network{};
+  std::string keyring{};  ///< absolute folder of the keys that this process uses; empty: none
   /// Commands of the session need a key: that of chosen_key_file() or a new one, unless it has one.
   bool has_key = false;
 };
@@ -70,7 +72,8 @@ class SessionRuns : public std::runtime_error {
 class SessionRegistration {
  public:
   /// @throws std::runtime_error when a node of the same name runs in the session already, when the
-  /// session speaks through another address of this host, when sessions of this name run in several
+  /// session speaks through another address of this host or is secured and the request is not, or the
+  /// other way round, when sessions of this name run in several
   /// domains and the request names none, when no domain is free, when the folder cannot be used, or
   /// as `simulates` says. SessionRuns as `is_player` says.
   SessionRegistration(std::filesystem::path folder, const SessionRequest& request);

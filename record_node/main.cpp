@@ -93,6 +93,7 @@ record::RecorderConfig config_of(const node::NodeStart& start,
   record::RecorderConfig config;
   config.domain = start.domain;
   config.network = start.network;
+  config.security = start.config().security;
   config.session = start.launch.session;
   config.node = start.node->name;
   config.out = record::take_path(section.out, start.launch.session, start.launch.directory);

@@ -26,6 +26,7 @@ dds::ParticipantConfig member_of(const RecorderConfig& config) {
   dds::ParticipantConfig member{config.domain, config.session, config.node + "/topics"};
   member.every_partition = config.session.empty();
   member.network = config.network;
+  member.security = config.security;
   member.observes = true;
   return member;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "node/dds/network.h"
+#include "node/dds/security.h"
 #include "record_node/mcap/compression.h"
 #include "record_node/take_files.h"
 
@@ -20,6 +21,7 @@ struct RecorderConfig {
   int domain = 0;
   std::string session;  ///< empty: the whole domain
   dds::Network network{};
+  dds::Security security{};
   std::string node = "record";
   std::filesystem::path out;               ///< a file that is not there yet
   std::vector<std::string> topics;         ///< patterns; empty: all

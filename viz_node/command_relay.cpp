@@ -10,12 +10,13 @@
 namespace cordis::viz {
 
 CommandRelay::CommandRelay(dds::Participant& participant, std::uint64_t epoch,
-                           std::optional<node::SessionKey> key, PageRights rights)
+                           std::optional<node::SessionKey> key, PageRights rights, bool may_command)
     : session_(participant.config().session),
       sender_(participant.config().node + " " + std::to_string(epoch)),
       key_(std::move(key)),
-      rights_(std::move(rights)),
-      writer_(participant, dds::Topic::kCommand) {}
+      rights_(std::move(rights)) {
+  if (may_command) writer_.emplace(participant, dds::Topic::kCommand);
+}
 
 void CommandRelay::take(const msg::NodeStatus& status) {
   if (!key_) return;
@@ -29,6 +30,7 @@ void CommandRelay::take(const msg::NodeStatus& status) {
 }
 
 void CommandRelay::send(const PageCommand& wanted) noexcept {
+  if (!writer_) return;
   try {
     msg::ControlCommand command;
     command.sender(sender_);
@@ -42,8 +44,8 @@ void CommandRelay::send(const PageCommand& wanted) noexcept {
     std::vector<node::CommandedNode> targets;
     for (const auto& [name, epoch] : targets_) targets.push_back({name, epoch});
     if (key_) node::authenticate(command, *key_, session_, targets);
-    static_cast<void>(writer_.write(command));  // the page sees no reply then
-  } catch (...) {                               // no memory for it: the page sees no reply
+    static_cast<void>(writer_->write(command));  // the page sees no reply then
+  } catch (...) {                                // no memory for it: the page sees no reply
   }
 }
 

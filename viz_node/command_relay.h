@@ -20,9 +20,10 @@ class CommandRelay {
  public:
   /// @param key     of the session, when it has one
   /// @param rights  of pages; what goes beyond them is not sent
+  /// @param may_command  false: nothing is ever sent
   /// @throws std::runtime_error when DDS refuses
   CommandRelay(dds::Participant& participant, std::uint64_t epoch,
-               std::optional<node::SessionKey> key, PageRights rights);
+               std::optional<node::SessionKey> key, PageRights rights, bool may_command);
 
   /// Takes the status of a node: commands go to the newest life of each sim_node and player.
   void take(const msg::NodeStatus& status);
@@ -41,7 +42,7 @@ class CommandRelay {
   PageRights rights_;
   std::mutex mutex_;
   std::map<std::string, std::uint64_t> targets_;  // epochs of those that commands are for, by name
-  dds::Writer<msg::ControlCommand> writer_;
+  std::optional<dds::Writer<msg::ControlCommand>> writer_;
   std::uint64_t count_ = 0;
 };
 

@@ -76,10 +76,11 @@ int run(const node::NodeStart& start, config::Problems& problems) {
           std::to_string(joined.domain));
   dds::Participant participant(joined);
   viz::SceneMirror mirror(config.rate_hz);
-  viz::CommandRelay relay(participant, start.epoch, start.key, config.rights);
-  dds::Writer<msg::PointerTarget> targets(participant, dds::Topic::kPointerTarget);
+  viz::CommandRelay relay(participant, start.epoch, start.key, config.rights, start.may_command());
+  std::optional<dds::Writer<msg::PointerTarget>> targets;
+  if (start.may_command()) targets.emplace(participant, dds::Topic::kPointerTarget);
   viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
-    static_cast<void>(targets.write(target));  // the next one replaces it
+    if (targets) static_cast<void>(targets->write(target));  // the next one replaces it
   });
   std::optional<viz::TopicBoard> board;
   if (config.foxglove) board.emplace();
@@ -90,6 +91,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                          .folder = viz::page_folder(),
                          .token = page_token(),
                          .rights = config.rights,
+                         .is_view_only = !start.may_command(),
                          .epoch = start.epoch,
                          .topics = board ? &*board : nullptr},
                         mirror, pointers,
@@ -105,6 +107,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                                    return node::nothing_to_do(command, msg::KIND_VIZ_NODE);
                                  });
   commands.start();
+  if (!start.may_command()) spdlog::info("the key of this view lets no page command or drag");
   warn_about(config, server);
   spdlog::info("page at {}", server.command_url());
   if (config.foxglove)

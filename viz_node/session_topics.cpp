@@ -9,6 +9,7 @@ namespace {
 dds::ParticipantConfig observer_of(const dds::ParticipantConfig& joined) {
   dds::ParticipantConfig observer{joined.domain, joined.session, joined.node + "/topics"};
   observer.network = joined.network;
+  observer.security = joined.security;
   observer.observes = true;
   return observer;
 }

@@ -33,7 +33,8 @@ ControlLine::ControlLine(const SessionAddress& address, std::optional<node::Sess
       participant_({.domain = address.domain,
                     .session = address.session,
                     .node = "cordis ctl",
-                    .network = address.network}),
+                    .network = address.network,
+                    .security = security_for(address, node::Role::kController)}),
       commands_(participant_, dds::Topic::kCommand),
       replies_(participant_, dds::Topic::kReply),
       roster_(participant_, kLately) {}

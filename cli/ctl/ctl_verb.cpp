@@ -10,7 +10,6 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_address.h"
-#include "node/session_key.h"
 #include "node/terminal_text.h"
 
 namespace cordis::cli {
@@ -24,6 +23,7 @@ struct CtlWords {
   std::string domain;
   std::string session_name;
   std::string timeout = "5s";
+  std::string keyring;
 };
 
 std::string listed(const std::vector<std::string>& names) {
@@ -52,11 +52,24 @@ std::runtime_error silence(const CtlWords& words, const SessionAddress& address,
                             words.timeout + "; a large scene may want a longer --timeout");
 }
 
+/// @throws std::runtime_error for a key that does not let its owner command
+void check_role(const SessionAddress& address) {
+  const auto identity = identity_for(address, node::Role::kController);
+  if (!identity || identity->role == node::Role::kController ||
+      identity->role == node::Role::kViewThatCommands)
+    return;
+  throw std::runtime_error(
+      "the key in " + address.keyring + " is for the role " + node::role_word(identity->role) +
+      ", which does not command: `cordis keys add` makes one for a controller");
+}
+
 int ctl(const CtlWords& words) {
   const ControlWords command = read_control_words(words.verb, words.words);
   const auto timeout = parse_duration(words.timeout);
-  const SessionAddress address = address_of(words.session, words.domain, words.session_name);
-  ControlLine line(address, node::key_of_session(address.session, address.domain));
+  const SessionAddress address = address_of(words.session, words.domain, words.session_name,
+                                            /*is_any=*/false, words.keyring);
+  check_role(address);
+  ControlLine line(address, command_key_of(address));
   const std::vector<msg::ControlReply> replies =
       line.ask(words.node, command.verb, command.argument, timeout);
   if (replies.empty()) throw silence(words, address, line);
@@ -88,6 +101,8 @@ void add_ctl_verb(CommandLine& line) {
               "DDS domain, for a session that another user or host began");
   verb.option("--session", "NAME", words->session_name,
               "Name of the session, when it is not that of the file");
+  verb.option("--security", "FOLDER", words->keyring,
+              "Keys for a secured session that another user or host began");
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");
   verb.examples("Commands:\n" + control_verb_list() +
                 "\nEach is done between two steps and answered in one sentence; docs/control.md\n"

@@ -47,7 +47,8 @@ std::string session_text(const std::string& session, const std::string& pattern,
   const dds::Participant participant({.domain = address.domain,
                                       .session = address.session,
                                       .node = "cordis " + std::to_string(getpid()),
-                                      .network = address.network});
+                                      .network = address.network,
+                                      .security = security_for(address, node::Role::kController)});
   wait_for_writers(participant);
   std::map<dds::ParticipantPrefix, std::string> processes;
   for (const dds::Peer& peer : participant.peers()) processes[peer.prefix] = peer.name;

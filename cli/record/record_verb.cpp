@@ -46,6 +46,7 @@ record::RecorderConfig config_of(const RecordWords& words, const SessionAddress&
   config.domain = address.domain;
   config.session = address.session;
   config.network = address.network;
+  config.security = security_for(address, node::Role::kRecorder);
   config.node = "cordis record";
   const auto packed = mcap::compression_named(words.compression);
   if (!packed)

@@ -15,6 +15,8 @@
 #include "cli/table/table_options.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
+#include "node/security/identity.h"
+#include "node/security/keyring.h"
 #include "node/session_key.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
@@ -31,6 +33,20 @@ config::Launch read_launch(const RunOptions& options) {
     node::print_text(stderr, warning.text() + "\n");
   }
   return launch;
+}
+
+/// The key of the launcher. Its folder has the key of commands too, unless the user has chosen one.
+dds::Security security_of_launcher(const std::string& keyring) {
+  if (keyring.empty()) return {};
+  using node::Role;
+  const node::Identity identity =
+      node::identity_in(keyring,
+                        {Role::kLauncher, Role::kController, Role::kView, Role::kViewThatCommands,
+                         Role::kRecorder, Role::kDevice, Role::kSim},
+                        "");
+  setenv("CORDIS_SESSION_KEY_FILE", node::SharedKeyFiles(keyring).command_key.c_str(),
+         /*replace=*/0);
+  return identity.security;
 }
 
 /// What the launch file means on this host. @throws ConfigError
@@ -56,6 +72,8 @@ int run(const RunOptions& options) {
   const bool simulates = std::ranges::any_of(
       plan.nodes, [](const PlannedNode& node) { return node::simulates(node.program); });
   const dds::Network network = network_on_this_host(launch);
+  const std::string keyring = node::keyring_of(launch);
+  const dds::Security security = security_of_launcher(keyring);
   node::SessionRegistration registration(
       node::runtime_folder(), {.session = launch.session,
                                .domain = launch.domain,
@@ -63,6 +81,7 @@ int run(const RunOptions& options) {
                                .nodes = names_of(plan),
                                .simulates = simulates,
                                .network = network,
+                               .keyring = keyring,
                                .has_key = true});
   // The nodes find it there; the key itself stands in no environment.
   setenv("CORDIS_SESSION_KEY_FILE",
@@ -71,7 +90,7 @@ int run(const RunOptions& options) {
          /*replace=*/1);
   if (!launch.domain) name_domain(plan, registration.domain());
   if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
-  return run_session(launch, plan, options, registration, network, signals);
+  return run_session(launch, plan, options, registration, network, security, signals);
 }
 
 struct RunWords {

@@ -51,7 +51,8 @@ std::string launch_words(const config::Launch& launch, const RunOptions& options
 class Session : public Watcher {
  public:
   Session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
-          node::SessionRegistration& registration, const dds::Network& network)
+          node::SessionRegistration& registration, const dds::Network& network,
+          const dds::Security& security)
       : plan_(plan),
         registration_(registration),
         output_(names_of(plan), options.log_directory, options.no_color),
@@ -61,7 +62,8 @@ class Session : public Watcher {
                       .session = launch.session,
                       .node = kLauncherNode,
                       .lockstep = launch.clock == config::Clock::kLockstep,
-                      .network = network}),
+                      .network = network,
+                      .security = security}),
         statuses_(participant_, dds::Topic::kStatus),
         present_(plan.nodes.size(), true),
         killed_(plan.nodes.size(), false),
@@ -72,8 +74,10 @@ class Session : public Watcher {
       signals_.emplace(participant_, options.signals_file, options.summary_file);
     output_.say("session '" + launch.session + "' in DDS domain " +
                 std::to_string(registration.domain()) +
-                (network.is_loopback() ? "" : " on " + network.address));
-    const std::string warning = node::exposure_warning(network, registration.domain());
+                (network.is_loopback() ? "" : " on " + network.address) +
+                (security.is_on() ? ", secured" : ""));
+    const std::string warning =
+        node::exposure_warning(network, registration.domain(), security.is_on());
     if (!warning.empty()) output_.say("warning: " + warning);
     for (const std::string& sentence : existing_takes(launch, plan)) output_.say(sentence);
   }
@@ -270,8 +274,8 @@ class Session : public Watcher {
 
 int run_session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
                 node::SessionRegistration& registration, const dds::Network& network,
-                StopSignals& signals) {
-  Session session(launch, plan, options, registration, network);
+                const dds::Security& security, StopSignals& signals) {
+  Session session(launch, plan, options, registration, network, security);
   std::vector<Command> commands;
   for (const PlannedNode& node : plan.nodes) {
     commands.push_back(node.command);

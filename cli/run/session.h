@@ -4,6 +4,7 @@
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
 #include "node/dds/network.h"
+#include "node/dds/security.h"
 #include "node/session_registry.h"
 
 namespace cordis::cli {
@@ -18,6 +19,6 @@ namespace cordis::cli {
 /// written.
 int run_session(const config::Launch& launch, const RunPlan& plan, const RunOptions& options,
                 node::SessionRegistration& registration, const dds::Network& network,
-                StopSignals& signals);
+                const dds::Security& security, StopSignals& signals);
 
 }  // namespace cordis::cli

@@ -29,6 +29,7 @@ LiveSource::LiveSource(const std::string& session, const std::string& domain) : 
   dds::ParticipantConfig config{address.domain, address.session,
                                 "cordis " + std::to_string(getpid())};
   config.network = address.network;
+  config.security = security_for(address, node::Role::kController);
   participant_ = std::make_unique<dds::Participant>(config);
   descriptions_ =
       std::make_unique<dds::Reader<msg::SceneDescription>>(*participant_, dds::Topic::kDescription);

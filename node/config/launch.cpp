@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kLongestName = 64;
 constexpr const char* kRecordKey = "record";
 constexpr const char* kNetworkKey = "network";
+constexpr const char* kSecurityKey = "security";
 
 const std::vector<std::string>& programs() {
   static const std::vector<std::string> kPrograms{"sim_node", "device_node", "viz_node",
@@ -53,15 +54,15 @@ std::vector<std::string> path_of_override(const Value& root, const std::string& 
     problems.error(place, "expected name.key=value, got '" + target + "=...'");
     return {};
   }
-  if (path.size() == 1 && (first == "clock" || first == "domain" || first == "session"))
-    return path;
+  const std::vector<std::string> of_session{"clock", "domain", "session", kSecurityKey};
+  if (path.size() == 1 && std::ranges::find(of_session, first) != of_session.end()) return path;
 
   std::vector<std::string> names;
   for (const Value::Entry& node : root.find("nodes").entries()) names.push_back(node.key);
   const bool is_node = std::find(names.begin(), names.end(), first) != names.end();
   if ((first == kRecordKey || first == kNetworkKey) && !is_node) return path;
   if (std::find(names.begin(), names.end(), first) == names.end()) {
-    if (path.size() == 1) names.insert(names.end(), {"clock", "domain", "session"});
+    if (path.size() == 1) names.insert(names.end(), of_session.begin(), of_session.end());
     if (path.size() > 1) names.insert(names.end(), {kNetworkKey, kRecordKey});
     problems.error(place, "no node is named '" + first + "'", did_you_mean(first, names));
     return {};
@@ -188,6 +189,10 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
     const Value network = reader.required_mapping(kNetworkKey);
     if (network.exists()) launch.network = read_network(network, problems);
   }
+  launch.security = reader.optional_text(kSecurityKey, "");
+  if (reader.has(kSecurityKey) && reader.ok() && launch.security.empty())
+    reader.error_at(kSecurityKey, "security must name a folder of keys",
+                    "`cordis keys new FOLDER` makes one");
   launch.clock = read_clock(reader);
   const Value nodes = reader.required_mapping("nodes");
   for (const Value::Entry& entry : nodes.entries()) {

@@ -46,6 +46,7 @@ struct Launch {
   std::string session;              ///< name of the session; DDS partition
   std::optional<int> domain;        ///< DDS domain, 0..101, where the file or a word names one
   std::optional<NetworkSection> network;  ///< absent: the session stays on this host
+  std::string security;  ///< folder of keys, as the file names it; empty: nothing is encrypted
   Clock clock = Clock::kRealtime;
   std::vector<LaunchNode> nodes;  ///< in the order of the file
 
@@ -67,8 +68,8 @@ struct Launch {
 /// A node with a `clock` other than that of the session is left out.
 /// `record:` stands for a record_node named `record`.
 /// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
-///                   `clock=`, `domain=`, `session=`, `record=`, `network.key=` for the session
-///                   itself, each value in YAML; a word that fits nothing is a problem.
+///                   `clock=`, `domain=`, `session=`, `security=`, `record=`, `network.key=` for the
+///                   session itself, each value in YAML; a word that fits nothing is a problem.
 /// @return what could be read; to be used only when `problems` has no errors.
 [[nodiscard]] Launch load_launch(const std::string& path, const std::vector<std::string>& overrides,
                                  Problems& problems);

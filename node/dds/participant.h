@@ -11,6 +11,7 @@
 
 #include "idl/control.h"
 #include "node/dds/network.h"
+#include "node/dds/security.h"
 
 namespace cordis::dds {
 
@@ -26,6 +27,7 @@ struct ParticipantConfig {
   Network network{};             ///< equal in all processes of a session on one host
   bool observes = false;         ///< force loops send to it from another thread, 2 ms later
   bool for_loop = false;         ///< a thread that waits on an Arrival takes its samples itself
+  Security security{};           ///< on in all processes of a session, or in none
 };
 
 /// What all that a participant owns begins with, in DDS.
@@ -84,6 +86,9 @@ struct FoundWriter {
 ///
 /// Readers take nothing from a participant that speaks another version of the wire; writers fill in
 /// `wire_version` where a message has it.
+///
+/// A secured participant knows only participants that have proven who they are. It takes no
+/// datagram in the clear but what finds and authenticates participants.
 ///
 /// Its threads inherit the priority of the thread that makes it, but for the one that announces it
 /// and sends again what was lost: that one has the lowest realtime priority. Who adds or removes

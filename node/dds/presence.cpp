@@ -12,6 +12,7 @@
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "node/dds/departure.h"
 #include "node/dds/process_identity.h"
@@ -27,6 +28,9 @@ namespace {
 // Below what an Ethernet frame holds, in a tunnel too: a larger datagram is lost with any of its
 // parts.
 constexpr std::uint32_t kLargestDatagramBytes = 1400;
+// In a secured session what authenticates a participant comes in one piece: its certificate and its
+// permissions have 6 kB.
+constexpr std::uint32_t kLargestSecuredBytes = 16384;
 constexpr int kLateAnnouncementLooks = 5;               // [s] longer than any datagram is under way
 constexpr const char* kDiscoveryGroup = "239.255.0.1";  // [DDSI 9.6.1.4]
 constexpr const char* kServerPrefix =
@@ -66,6 +70,31 @@ void set_discovery(const ParticipantConfig& config, const ParticipantPorts& port
   builtin.initialPeersList.push_back(group);
 }
 
+/// Names the plug-ins of DDS Security and their files.
+void set_security(const Security& security, rtps::PropertyPolicy& policy) {
+  const auto add = [&policy](const char* name, const std::string& value) {
+    policy.properties().emplace_back(std::string("dds.sec.") + name, value);
+  };
+  const auto file = [](const std::string& path) { return "file://" + path; };
+  add("auth.plugin", "builtin.PKI-DH");
+  add("auth.builtin.PKI-DH.identity_ca", file(security.identity_authority));
+  add("auth.builtin.PKI-DH.identity_certificate", file(security.certificate));
+  add("auth.builtin.PKI-DH.private_key", file(security.private_key));
+  add("access.plugin", "builtin.Access-Permissions");
+  add("access.builtin.Access-Permissions.permissions_ca", file(security.permissions_authority));
+  add("access.builtin.Access-Permissions.governance", file(security.governance));
+  add("access.builtin.Access-Permissions.permissions", file(security.permissions));
+  add("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+/// A secured participant has a GUID that depends on its certificate. Fast DDS takes two processes
+/// whose GUIDs begin alike for one, where messages need no socket, and loses them.
+void send_all_by_sockets() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+}
+
 fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
                                            const ParticipantPorts& ports,
                                            const std::shared_ptr<TransportLink>& link) {
@@ -81,7 +110,8 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   udp->interfaceWhiteList.emplace_back(config.network.address);
   udp->sendBufferSize = kSocketBufferBytes;
   udp->receiveBufferSize = kSocketBufferBytes;
-  if (!config.network.is_loopback()) udp->maxMessageSize = kLargestDatagramBytes;
+  if (!config.network.is_loopback())
+    udp->maxMessageSize = config.security.is_on() ? kLargestSecuredBytes : kLargestDatagramBytes;
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(
       std::make_shared<UdpTransportDescriptor>(udp, config, ports.samples(), link));
@@ -100,6 +130,7 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   // processes that have ended are dropped by their identity.
   builtin.discovery_config.leaseDuration = eprosima::fastrtps::c_TimeInfinite;
   builtin.discovery_config.leaseDuration_announcementperiod = Duration_t(1, 0);
+  if (config.security.is_on()) set_security(config.security, qos.properties());
   builtin.discovery_config.initial_announcements.count = 20;
   builtin.discovery_config.initial_announcements.period = Duration_t(0, 10'000'000u);
   return qos;
@@ -156,6 +187,7 @@ Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_else
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
+  if (config.security.is_on()) send_all_by_sockets();
   const std::vector<pid_t> threads_before = threads_of_process();
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_, link_), this,
@@ -215,6 +247,16 @@ fast::Topic* Presence::topic(const std::string& name, fast::TypeSupport type) {
 std::vector<Peer> Presence::peers() const {
   const std::lock_guard lock(mutex_);
   std::vector<Peer> peers;
+  for (const auto& [prefix, known] : peers_) {
+    if (known.is_trusted) peers.push_back(known.peer);
+  }
+  return peers;
+}
+
+/// Also those that have not proven who they are.
+std::vector<Peer> Presence::all_peers() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<Peer> peers;
   for (const auto& [prefix, known] : peers_) peers.push_back(known.peer);
   return peers;
 }
@@ -257,7 +299,7 @@ void Presence::evaluate(const ParticipantPrefix& participant, std::uint32_t wire
 
 void Presence::drop_who_is_gone() noexcept {
   try {
-    for (const Peer& peer : peers()) {
+    for (const Peer& peer : all_peers()) {
       if (has_ended(peer, config_.network.address)) drop(peer);
     }
     if (!config_.network.is_loopback()) look_at_those_elsewhere();
@@ -296,7 +338,8 @@ void Presence::look_at_those_elsewhere() {
 void Presence::count_elsewhere() {
   peers_elsewhere_ = static_cast<int>(std::ranges::count_if(peers_, [this](const auto& entry) {
     const Peer& peer = entry.second.peer;
-    return !peer.is_here() && peer.name.starts_with(config_.session + "/");
+    return entry.second.is_trusted && !peer.is_here() &&
+           peer.name.starts_with(config_.session + "/");
   }));
 }
 
@@ -322,6 +365,7 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
     known.peer = {found.info.m_participantName.to_string(), prefix,
                   std::string(process.begin(), process.end()),
                   discovery_port_of(found.info, config_.network.address)};
+    known.is_trusted = known.is_trusted || !config_.security.is_on();
     known.record = &found.info;  // it stays where it is until the participant is dropped
     count_elsewhere();
     // Others, of other programs, announce leases that end. What is handed over is the record of
@@ -343,10 +387,27 @@ void Presence::evaluate_discovered(const ParticipantPrefix& participant) {
   std::optional<std::uint32_t> version;
   {
     const std::lock_guard lock(mutex_);
-    const Peer& peer = peers_[participant].peer;
+    const auto known = peers_.find(participant);
+    if (known == peers_.end() || !known->second.is_trusted) return;
+    const Peer& peer = known->second.peer;
     if (peer.name.starts_with(config_.session + "/")) version = marked_wire_version(peer.process);
   }
   if (version) evaluate(participant, *version);
+}
+
+void Presence::onParticipantAuthentication(fast::DomainParticipant*,
+                                           rtps::ParticipantAuthenticationInfo&& info) {
+  using Info = rtps::ParticipantAuthenticationInfo;
+  if (info.status != Info::AUTHORIZED_PARTICIPANT) return;
+  const ParticipantPrefix prefix = prefix_of(info.guid);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = peers_.find(prefix);
+    if (known == peers_.end()) return;
+    known->second.is_trusted = true;
+    count_elsewhere();
+  }
+  evaluate_discovered(prefix);
 }
 
 void Presence::on_publisher_discovery(fast::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) {

@@ -83,6 +83,9 @@ class Presence final : public fast::DomainParticipantListener {
   void on_participant_discovery(
       fast::DomainParticipant*,
       eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& found) override;
+  void onParticipantAuthentication(
+      fast::DomainParticipant*,
+      eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
   void on_publisher_discovery(fast::DomainParticipant*,
                               eprosima::fastrtps::rtps::WriterDiscoveryInfo&& found) override;
   void on_subscriber_discovery(fast::DomainParticipant*,
@@ -98,8 +101,10 @@ class Presence final : public fast::DomainParticipantListener {
     std::chrono::steady_clock::time_point last_message;  // as of the last look
     int silent_looks = 0;
     bool has_returned = false;  // dropped before, and not yet known to speak
+    bool is_trusted = false;    // in a secured session: has proven who it is
   };
 
+  std::vector<Peer> all_peers() const;
   void look_at_those_elsewhere();
   void count_elsewhere();
   void evaluate_discovered(const ParticipantPrefix& participant);

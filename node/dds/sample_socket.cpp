@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "node/dds/secure_datagram.h"
 #include "node/dds/udp_address.h"
 #include "node/dds/udp_locator.h"
 #include "node/time.h"
@@ -21,8 +22,9 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min() / 2;
 }  // namespace
 
 SampleSocket::SampleSocket(const std::string& address, const Locator& locator, Receiver& receiver,
-                           std::uint32_t buffer_bytes, std::uint32_t longest_bytes)
+                           std::uint32_t buffer_bytes, std::uint32_t longest_bytes, bool is_secured)
     : file_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
+      is_secured_(is_secured),
       locator_(locator),
       receiver_(&receiver),
       datagram_(longest_bytes),
@@ -57,7 +59,8 @@ SampleSocket::Taken SampleSocket::take() noexcept {
 }
 
 void SampleSocket::deliver() noexcept {
-  receiver_->OnDataReceived(datagram_.data(), size_, locator_, sender_);
+  if (!is_secured_ || is_fit_for_secured(datagram_.data(), size_))
+    receiver_->OnDataReceived(datagram_.data(), size_, locator_, sender_);
   mutex_.unlock();
 }
 

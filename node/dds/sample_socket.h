@@ -26,9 +26,10 @@ class SampleSocket {
   /// @param receiver        what hands a datagram to DDS; not used after detach()
   /// @param buffer_bytes    that the kernel is to keep
   /// @param longest_bytes   of a datagram
+  /// @param is_secured      datagrams that are not is_fit_for_secured() are dropped
   /// @throws std::system_error when the port cannot be bound.
   SampleSocket(const std::string& address, const Locator& locator, Receiver& receiver,
-               std::uint32_t buffer_bytes, std::uint32_t longest_bytes);
+               std::uint32_t buffer_bytes, std::uint32_t longest_bytes, bool is_secured = false);
   ~SampleSocket();
   SampleSocket(const SampleSocket&) = delete;
   SampleSocket& operator=(const SampleSocket&) = delete;
@@ -60,6 +61,7 @@ class SampleSocket {
 
  private:
   int file_ = -1;
+  const bool is_secured_;
   Locator locator_;
   std::mutex mutex_;  // of the next four; held from take() to deliver()
   Receiver* receiver_;

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "node/dds/participant_ports.h"
+#include "node/dds/secure_datagram.h"
 #include "node/dds/udp_address.h"
 #include "node/dds/udp_locator.h"
 
@@ -91,7 +92,8 @@ bool UdpTransport::OpenInputChannel(const Locator& locator, SampleSocket::Receiv
   if (sender_ < 0 || end_of_work_ < 0) return false;
   try {
     socket_ = std::make_shared<SampleSocket>(descriptor_.participant.network.address, locator,
-                                             *receiver, descriptor_.buffer_bytes, longest_bytes);
+                                             *receiver, descriptor_.buffer_bytes, longest_bytes,
+                                             descriptor_.participant.security.is_on());
     attendant_ = std::thread([this] { attend(); });
   } catch (const std::exception&) {
     socket_.reset();
@@ -146,6 +148,7 @@ bool UdpTransport::send(rtps::SenderResource* below, const std::uint8_t* datagra
 
 void UdpTransport::receive(SampleSocket::Receiver* next, const std::uint8_t* datagram,
                            std::uint32_t size, const Locator& local, const Locator& remote) {
+  if (descriptor_.participant.security.is_on() && !is_fit_for_secured(datagram, size)) return;
   next->OnDataReceived(datagram, size, local, remote);
 }
 

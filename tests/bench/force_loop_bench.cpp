@@ -3,12 +3,14 @@
 //
 // usage: force_loop_bench [seconds of the realtime part, 60]
 //        force_loop_bench --rates [seconds of a run, 10] [FOLDER WIRE]
+//        force_loop_bench --secured [seconds of a run, 10]
 //        force_loop_bench --chart FILE.svg [seconds of a run, 20]
 // The first prints lockstep exchanges per second and round trip, realtime overruns with the page
 // open in Chromium (where there is one), resident memory. The second prints the delay from sensor to
 // motor, the stiffness that it permits, and the processor time of each tick in real time, at 1, 2 and 4 kHz, polling apart; with the
 // folder of another build's executables, and the WIRE_VERSION that they speak, those of both in turns.
-// The third draws how often which delay occurs.
+// The third prints the same of sessions with keys and without, in turns.
+// The fourth draws how often which delay occurs.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -284,18 +286,19 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Runs at each rate; with another build in turns, three of each.
+/// Runs at each rate; with another build or with keys in turns, three of each.
 bool rates(std::chrono::seconds duration, const cordis::test::Build& other) {
+  const bool has_other = !other.folder.empty() || other.is_secured;
   std::printf("realtime, one key and 40 masses, 4 steps per period, runs of %lld s\n",
               static_cast<long long>(duration.count()));
   for (const int rate_hz : {1000, 2000, 4000}) {
     std::vector<double> ratios;
     for (int turn = 0; turn < 3; ++turn) {
       std::optional<Measured> beside;
-      if (!other.folder.empty()) {
+      if (has_other) {
         beside = realtime_run(rate_hz, duration, other);
         if (!beside) return false;
-        print_run("other", rate_hz, *beside);
+        print_run(other.is_secured ? "keys" : "other", rate_hz, *beside);
       }
       const std::optional<Measured> ours = realtime_run(rate_hz, duration, {});
       if (!ours) return false;
@@ -303,8 +306,9 @@ bool rates(std::chrono::seconds duration, const cordis::test::Build& other) {
       if (beside) ratios.push_back(beside->p50_s / ours->p50_s);
     }
     if (!ratios.empty())
-      std::printf("  %d Hz: p50 of the other build is %.1f times that of this one\n", rate_hz,
-                  median(ratios));
+      std::printf("  %d Hz: p50 %s is %.2f times that %s\n", rate_hz,
+                  other.is_secured ? "with keys" : "of the other build", median(ratios),
+                  other.is_secured ? "without" : "of this one");
   }
   return true;
 }
@@ -331,6 +335,11 @@ int main(int argc, char** argv) {
       other.wire_version = static_cast<std::uint32_t>(std::atoi(argv[4]));
     }
     return rates(std::chrono::seconds(argc > 2 ? std::atoi(argv[2]) : 10), other) ? 0 : 1;
+  }
+  if (argc > 1 && std::strcmp(argv[1], "--secured") == 0) {
+    cordis::test::Build secured;
+    secured.is_secured = true;
+    return rates(std::chrono::seconds(argc > 2 ? std::atoi(argv[2]) : 10), secured) ? 0 : 1;
   }
   if (argc > 2 && std::strcmp(argv[1], "--chart") == 0) {
     if (!cordis::test::has_gnuplot()) {

@@ -125,7 +125,7 @@ TEST(Launch, TakesOverridesOfTheCommandLine) {
   const Launch launch = load_launch_text(
       kLaunch, "l.yaml",
       {"keyboard.driver=script", "keyboard.hand.mass_kg=0.5", "keyboard.keys=[1, 2]",
-       "view.title=a=b", "clock=asap", "domain=7", "session=mine"},
+       "view.title=a=b", "clock=asap", "domain=7", "session=mine", "security=../keys"},
       problems);
 
   ASSERT_EQ(problems.text(), "");
@@ -139,6 +139,7 @@ TEST(Launch, TakesOverridesOfTheCommandLine) {
   EXPECT_EQ(launch.clock, Clock::kAsap);
   EXPECT_EQ(launch.domain, 7);
   EXPECT_EQ(launch.session, "mine");
+  EXPECT_EQ(launch.security, "../keys");
 }
 
 struct BadOverride {
@@ -170,6 +171,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"clock=fast",
                     "'clock' in launch file must be one of realtime, lockstep, asap, got 'fast'",
                     ""},
+        BadOverride{"security=''", "security must name a folder of keys",
+                    "`cordis keys new FOLDER` makes one"},
         BadOverride{"domain=102", "'domain' in launch file must be between 0 and 101, got 102", ""},
         BadOverride{"session=a b",
                     "the name of a session is 1 to 64 letters, digits, '_' and '-', got 'a b'", ""},

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <utility>
 
+#include "node/security/identity.h"
+#include "node/security/keyring.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
@@ -23,10 +25,14 @@ LiveSession::LiveSession(const std::string& clock, const std::string& nodes,
   folder_ = mkdtemp(name.data());
   add_file("launch.yaml", "cordis: 1\nsession: " + session +
                               "\ndomain: " + std::to_string(own_domain()) + "\nclock: " + clock +
-                              "\nnodes:\n" + nodes);
+                              (build_.is_secured ? "\nsecurity: keys" : "") + "\nnodes:\n" + nodes);
   dds::ParticipantConfig config{own_domain(), session, "observer", clock == "lockstep",
                                 nodes.find("standby_for:") != std::string::npos};
   if (build_.wire_version != 0) config.wire_version = build_.wire_version;
+  if (build_.is_secured) {
+    node::make_keyring(folder_ / "keys", {});
+    config.security = node::identity_in(folder_ / "keys", {node::Role::kController}, "").security;
+  }
   participant_ = std::make_unique<dds::Participant>(config);
 }
 

@@ -18,6 +18,7 @@ namespace cordis::test {
 struct Build {
   std::string folder;              ///< empty: of this build
   std::uint32_t wire_version = 0;  ///< version that they speak; 0: that of this build
+  bool is_secured = false;         ///< the session has keys of its own
 };
 
 /// A folder with a launch file and what belongs to it, the nodes of it that the test has started,

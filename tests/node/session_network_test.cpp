@@ -33,7 +33,7 @@ TEST(SessionNetwork, IsLoopbackWithoutASection) {
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(config, dds::Network{});
   EXPECT_TRUE(config.is_loopback());
-  EXPECT_EQ(exposure_warning(config, 7), "");
+  EXPECT_EQ(exposure_warning(config, 7, false), "");
 }
 
 TEST(SessionNetwork, RefusesAnInterfaceThatThisHostHasNotAndNamesThoseItHas) {
@@ -145,7 +145,7 @@ TEST(SessionNetwork, TakesTheWayToTheFirstPeerAndLeavesItsOwnAddressOut) {
   EXPECT_EQ(problems.text(), "");
   EXPECT_EQ(config.address, own) << "the way to an address of this host is that address";
   EXPECT_EQ(config.peers, std::vector<std::string>{"203.0.113.8"});
-  EXPECT_NE(exposure_warning(config, 7).find(own), std::string::npos);
+  EXPECT_NE(exposure_warning(config, 7, false).find(own), std::string::npos);
 }
 
 TEST(SessionNetwork, RefusesADiscoveryServerOnThisHost) {

@@ -217,6 +217,24 @@ TEST(SessionRegistry, TakesTheKeyOfAChosenFileAndRefusesASecondOne) {
   unsetenv("CORDIS_SESSION_KEY_FILE");
 }
 
+TEST(SessionRegistry, KeepsThoseWithKeysAndThoseWithoutApart) {
+  const Folder folder;
+  SessionRequest secured = request_of("bow", "sim");
+  secured.keyring = "/home/me/the keys";
+  const SessionRegistration of_secured(folder, secured);
+  const SessionRegistration of_open(folder, request_of("string", "sim"));
+  secured.session = "string";
+  secured.nodes = {"view"};
+
+  EXPECT_EQ(running_sessions(folder)[0].keyring, "/home/me/the keys");
+  EXPECT_EQ(running_sessions(folder)[1].keyring, "");
+  EXPECT_NE(
+      refusal_of(folder, request_of("bow", "view")).find("with the keys of /home/me/the keys, and"),
+      std::string::npos);
+  EXPECT_NE(refusal_of(folder, secured).find("without keys, and this part of it has those of"),
+            std::string::npos);
+}
+
 TEST(SessionRegistry, RefusesASecondNodeOfOneNameAndSaysWhatToDo) {
   const Folder folder;
   const SessionRegistration first(folder, request_of("string", "sim"));

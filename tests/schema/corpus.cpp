@@ -204,6 +204,7 @@ session: cover
 domain: 1
 clock: realtime
 network: {interface: eth0, peers: [192.168.5.2], multicast: true}
+security: keys
 nodes:
   sim: {node: sim_node, scene: none.yaml, duration_s: 1, force: true, delay_quantile: 0.9, signals_for: cordis, threads: 2}
   key: {node: device_node, device: devices/keyboard.yaml}

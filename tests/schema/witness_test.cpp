@@ -21,6 +21,7 @@ struct Exception {
 constexpr std::array kExceptions{
     Exception{"launch domain", "chosen at the start, or agreed on by several hosts"},
     Exception{"launch network", "the addresses of a network are those of whoever has one"},
+    Exception{"launch security", "keys are secrets: none ships"},
     Exception{"launch record", "what is recorded is chosen at the start: cordis run --record"},
     Exception{"launch nodes.NAME.node: record_node", "as `record`"},
     Exception{"launch nodes.NAME.out", "of a record_node"},

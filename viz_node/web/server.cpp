@@ -97,6 +97,7 @@ struct WebServer::Impl {
     state.hello = hello_text(config.session, config.node, config.rights, true);
     state.hello_view_only = hello_text(config.session, config.node, config.rights, false);
     if (!endpoint.address().is_loopback()) open_to_others(config.token);
+    state.is_view_only = config.is_view_only;
     state.topics = config.topics;
     state.hosts.foxglove = config.topics != nullptr;
     state.server_info = server_info_text(config.session, config.epoch);

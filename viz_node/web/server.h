@@ -21,6 +21,7 @@ struct ServerConfig {
   std::filesystem::path folder;  ///< the built page
   std::string token;             ///< what a page must know to command, beyond loopback
   PageRights rights;             ///< rights of pages that may command
+  bool is_view_only = false;     ///< no page may command or drag
   std::uint64_t epoch = 0;       ///< identifies this life of the node
   TopicBoard* topics = nullptr;  ///< what Foxglove reads, outlives the server; null: it is refused
 };

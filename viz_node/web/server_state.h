@@ -59,7 +59,8 @@ struct ServerState {
   std::shared_ptr<const std::string> status;  // newest text
   std::uint64_t status_number = 0;
   AcceptedHosts hosts;
-  std::string token;  ///< in the address of a page that may command; empty: every page may
+  std::string token;          ///< in the address of a page that may command; empty: every page may
+  bool is_view_only = false;  ///< no page may command
   std::size_t connections = 0;
   /// Connections that are no page: those that wait for a request first, the oldest of them first.
   std::map<std::pair<bool, std::uint64_t>, HttpSession*> requests;
@@ -74,7 +75,7 @@ struct ServerState {
   std::size_t pages() const noexcept { return connections - requests.size(); }
 
   bool may_command(std::string_view target) const noexcept {
-    return token.empty() || is_same_secret(token_of(target), token);
+    return !is_view_only && (token.empty() || is_same_secret(token_of(target), token));
   }
 
   mutable std::mutex latency_mutex;
