@@ -1,16 +1,20 @@
-// tests/campaigns/main.cpp -- plays many sessions whose processes stall now and then, and
+// tests/campaigns/main.cpp -- plays many sessions whose processes stall or die now and then, and
 // counts those that hang, abort or do not recover.
 //
-//   build/release/bin/stall_campaign lockstep --sessions 400 --parallel 8 --longest 14 --seed 2
-//   build/release/bin/stall_campaign realtime --sessions 100 --parallel 4 --longest 12
+//   build/release/bin/session_campaign lockstep --sessions 400 --parallel 8 --longest 14 --seed 2
+//   build/release/bin/session_campaign realtime --sessions 100 --parallel 4 --longest 12
 //
-// A realtime session stops each of its three nodes once. A short form of both is part of the tests.
+//   build/release/bin/session_campaign faults --sessions 50 --faults 20 --parallel 3 --longest 12
+//
+// A realtime session stops each of its three nodes once. A session with faults kills and stops its
+// nodes at random; every other one is in lockstep. A short form of each is part of the tests.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include "tests/campaigns/campaign.h"
+#include "tests/campaigns/leaks.h"
 
 namespace {
 
@@ -18,8 +22,8 @@ constexpr int kMaxRealtime = 6;  // sessions with launcher, observer, three node
 
 int usage() {
   std::fputs(
-      R"(usage: stall_campaign lockstep|realtime [--sessions N] [--parallel N] [--longest SECONDS]
-       [--window SECONDS] [--simulated SECONDS] [--seed N] [--patience SECONDS]
+      R"(usage: session_campaign lockstep|realtime|faults [--sessions N] [--parallel N] [--longest SECONDS]
+       [--window SECONDS] [--simulated SECONDS] [--faults N] [--seed N] [--patience SECONDS]
        [--programs FOLDER]
 )",
       stderr);
@@ -46,6 +50,8 @@ int main(int argc, char** argv) {
       options.window_s = value;
     } else if (option == "--simulated") {
       options.simulated_s = value;
+    } else if (option == "--faults") {
+      options.faults = static_cast<int>(value);
     } else if (option == "--seed") {
       options.seed = static_cast<std::uint32_t>(value);
     } else if (option == "--patience") {
@@ -56,11 +62,17 @@ int main(int argc, char** argv) {
       return usage();
     }
   }
-  if (kind != "lockstep" && kind != "realtime") return usage();
-  if (kind == "realtime" && options.parallel > kMaxRealtime) {
-    std::fprintf(stderr, "stall_campaign: the domain of the sessions has ports for %d at once\n",
+  const std::map<std::string, PlaySession> kinds{
+      {"lockstep", play_lockstep}, {"realtime", play_realtime}, {"faults", play_faults}};
+  if (!kinds.contains(kind)) return usage();
+  if (kind != "lockstep" && options.parallel > kMaxRealtime) {
+    std::fprintf(stderr, "session_campaign: the domain of the sessions has ports for %d at once\n",
                  kMaxRealtime);
     return 2;
   }
-  return play_all(options, kind == "lockstep" ? play_lockstep : play_realtime) == 0 ? 0 : 1;
+  const Leaks leaks;
+  const int failed = play_all(options, kinds.at(kind));
+  const std::string left = leaks.found();
+  std::fputs(left.c_str(), stdout);
+  return failed == 0 && left.empty() ? 0 : 1;
 }

@@ -1,27 +1,16 @@
 // tests/campaigns/realtime_campaign.cpp -- each node of a realtime session, with launcher and page,
 // stalls once for a long time, and all go on afterwards.
-#include <algorithm>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <memory>
+#include <string>
 #include <thread>
-#include <vector>
 
-#include "idl/control.h"
-#include "node/dds/reader.h"
-#include "node/status_words.h"
 #include "tests/campaigns/campaign.h"
+#include "tests/campaigns/campaign_session.h"
 #include "tests/support/child_process.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using namespace std::chrono_literals;
 
 constexpr const char* kNodes[] = {"sim", "keyboard", "view"};
 
@@ -64,70 +53,6 @@ script:
     - {at_s: 0.2, m: -0.01}
 )";
 
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cordis-campaign-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string add(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
-/// What the nodes say of themselves, as another process of the session receives it.
-class Statuses {
- public:
-  Statuses(const std::string& session)
-      : participant_({own_domain(), session, "observer"}),
-        reader_(participant_, dds::Topic::kStatus) {}
-
-  /// Waits until each node has said twice more that it runs, and has done more meanwhile: steps
-  /// with a hand, samples that are answered, frames that have come. @return the name of one that
-  /// has not
-  std::string wait_until_all_go_on(std::chrono::seconds at_most) {
-    const auto limit = Clock::now() + at_most;
-    take();
-    std::map<std::string, msg::NodeStatus> before = newest_;
-    std::string missing;
-    do {
-      std::this_thread::sleep_for(20ms);
-      take();
-      missing.clear();
-      for (const char* name : kNodes) {
-        const msg::NodeStatus& now = newest_[name];
-        msg::NodeStatus& then = before[name];
-        if (now.phase() != msg::PHASE_RUNNING) then = now;  // counts from when it runs
-        const bool goes_on = now.phase() == msg::PHASE_RUNNING && now.ticks() > then.ticks() &&
-                             now.sequence_number() > then.sequence_number() + 1;
-        if (!goes_on)
-          missing = std::string(name).append(", which is ").append(node::word_of(now.phase()));
-      }
-    } while (!missing.empty() && Clock::now() < limit);
-    return missing;
-  }
-
- private:
-  void take() {
-    msg::NodeStatus status;
-    while (reader_.take(status)) newest_[status.node()] = status;
-  }
-
-  dds::Participant participant_;
-  dds::Reader<msg::NodeStatus> reader_;
-  std::map<std::string, msg::NodeStatus> newest_;
-};
-
 }  // namespace
 
 Outcome play_realtime(const CampaignOptions& options, int index) {
@@ -138,7 +63,7 @@ Outcome play_realtime(const CampaignOptions& options, int index) {
   ChildProcess launcher({options.programs + "/cordis", "run", folder.add("launch.yaml", kLaunch),
                          "--no-color", "domain=" + std::to_string(own_domain()),
                          "session=" + session});
-  Statuses statuses(session);
+  Statuses statuses(session, {std::begin(kNodes), std::end(kNodes)});
   const auto failure = [&](const std::string& word) {
     launcher.signal(SIGTERM);
     launcher.wait(options.patience);
