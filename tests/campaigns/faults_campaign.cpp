@@ -246,9 +246,11 @@ class FaultySession {
     const bool makes_force = fault.node == "sim" || fault.node == "keyboard";
     const bool is_long = fault.stopped_s == 0.0 || fault.stopped_s >= 1.0;
     if (!is_realtime_ || !makes_force || !is_long) return "";
-    if (!wait_for([&] { return board_.log.zero_since(began) != 0; }))
+    // There may be none already: the loop had stalled, and let go, in the moment of the fault.
+    if (!wait_for([&] { return board_.log.newest() == 0.0 || board_.log.zero_since(began) != 0; }))
       return what + ": the motor keeps its force";
-    const double zero_s = 1e-9 * static_cast<double>(board_.log.zero_since(began) - began);
+    const std::int64_t zero_nsec = board_.log.zero_since(began);
+    const double zero_s = zero_nsec == 0 ? 0.0 : 1e-9 * static_cast<double>(zero_nsec - began);
     const double late_s = lateness_.take_worst();
     outcome_.figures[what + ": no force after [ms]"].push_back(1e3 * zero_s);
     outcome_.figures[kLateWakes].push_back(1e3 * late_s);
