@@ -18,7 +18,7 @@ struct CampaignOptions {
   double longest_s = 14.0;  ///< a process is stopped for
   double window_s = 16.0;   ///< in which processes are stopped, per session
   double simulated_s = 2.0;
-  int faults = 20;  ///< of each session
+  int faults = 20;  ///< number in each session
   std::uint32_t seed = 1;
   std::chrono::seconds patience{120};  ///< after which what does not go on counts as a hang
 };

@@ -24,11 +24,11 @@ using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 using namespace std::chrono_literals;
 
-constexpr double kLongestS =
-    1.0;  // that a force may stay: 20 times the watchdog, for busy machines
+// [s] A force that stays for longer is a failure. 20 times the watchdog: machines are busy.
+constexpr double kLongestS = 1.0;
 constexpr const char* kLateWakes = "the machine woke a thread late by [ms]";
 constexpr const char* kNobody = "no node";  // a time without a fault, to compare with
-constexpr int kMostKills = 4;               // of a node in a minute: the launcher gives up after 5
+constexpr int kMaxKills = 4;                // of a node in a minute: the launcher gives up after 5
 
 constexpr const char* kLaunchOfFaults = R"(cordis: 1
 clock: <clock>
@@ -127,7 +127,7 @@ class Faults {
         is_realtime_ || fault.node == "view" || fault.node == "record";  // else the session ends
     std::vector<Clock::time_point>& kills = kills_[fault.node];
     std::erase_if(kills, [](auto time) { return Clock::now() - time > 60s; });
-    if (below(2) == 0 && fault.node != kNobody && is_started_again && kills.size() < kMostKills) {
+    if (below(2) == 0 && fault.node != kNobody && is_started_again && kills.size() < kMaxKills) {
       kills.push_back(Clock::now());
       return fault;
     }
@@ -289,7 +289,7 @@ class FaultySession {
     return "";
   }
 
-  /// True if a verb of cordis ends with 0, or with 3: something that was lost is told.
+  /// True if a verb of cordis ends with 0, or with 3, which says that something was lost.
   bool succeeds(std::vector<std::string> words) {
     words.insert(words.begin(), options_.programs + "/cordis");
     ChildProcess verb(words);

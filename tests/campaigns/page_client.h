@@ -21,7 +21,7 @@ class PageClient {
   /// @param url  http://127.0.0.1:PORT, where to connect the next time
   void visit(const std::string& url);
 
-  int frames() const noexcept { return frames_; }  ///< that have come
+  int frames() const noexcept { return frames_; }  ///< received so far
 
  private:
   void read();
