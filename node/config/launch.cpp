@@ -193,6 +193,9 @@ Launch read_launch(Value root, const std::string& path, const std::vector<std::s
   if (reader.has(kSecurityKey) && reader.ok() && launch.security.empty())
     reader.error_at(kSecurityKey, "security must name a folder of keys",
                     "`cordis keys new FOLDER` makes one");
+  if (!launch.security.empty() && launch.network && launch.network->server)
+    reader.error_at(kSecurityKey, "a secured session has no discovery server",
+                    "name the hosts with 'peers', or set 'multicast: true'");
   launch.clock = read_clock(reader);
   const Value nodes = reader.required_mapping("nodes");
   for (const Value::Entry& entry : nodes.entries()) {

@@ -362,9 +362,12 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
     }
     const std::vector<rtps::octet> process = found.info.m_userData;
     Known& known = peers_[prefix];
-    known.peer = {found.info.m_participantName.to_string(), prefix,
-                  std::string(process.begin(), process.end()),
-                  discovery_port_of(found.info, config_.network.address)};
+    // Announcements come in the clear: none changes what is known of one that has proven who it is.
+    if (!known.is_trusted || !config_.security.is_on()) {
+      known.peer = {found.info.m_participantName.to_string(), prefix,
+                    std::string(process.begin(), process.end()),
+                    discovery_port_of(found.info, config_.network.address)};
+    }
     known.is_trusted = known.is_trusted || !config_.security.is_on();
     known.record = &found.info;  // it stays where it is until the participant is dropped
     count_elsewhere();
@@ -382,8 +385,10 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
   if (returned) on_return_();
 }
 
-/// Judges the version of a process of the session, before any message of it can come.
+/// Judges the version of a process of the session, before any message of it can come. In a secured
+/// session its messages say it, which are encrypted: anybody can announce another version.
 void Presence::evaluate_discovered(const ParticipantPrefix& participant) {
+  if (config_.security.is_on()) return;
   std::optional<std::uint32_t> version;
   {
     const std::lock_guard lock(mutex_);

@@ -69,6 +69,8 @@ bool is_fit_for_secured(const std::uint8_t* datagram, std::uint32_t size) noexce
     // A length of 0 stands for all that is left, but for a time stamp that is invalid.
     const bool is_last = low + high == 0 && rest[0] != kInfoTime;
     const std::size_t length = is_last ? rest.size() : said;
+    // Fast DDS goes on at the next multiple of 4, so it would read other submessages than these.
+    if (length % 4 != 0 && length != rest.size()) return false;
     if (length > rest.size() || !is_fit(rest.first(length))) return false;
     rest = rest.subspan(length);
   }

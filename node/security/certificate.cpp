@@ -21,6 +21,7 @@
 
 #include "node/assert.h"
 #include "node/config/open_file.h"
+#include "node/session_key.h"
 
 namespace cordis::node {
 namespace {
@@ -166,7 +167,8 @@ Certificate Certificate::make(const std::string& name, const std::string& unit, 
   require(X509_set_version(certificate, X509_VERSION_3) == 1, "make a certificate");
   number(certificate);
   X509_NAME* const subject = X509_get_subject_name(certificate);
-  add_entry(subject, "O", "Cordis");
+  // No two keys have one subject: the permissions of one would count for the other.
+  add_entry(subject, "O", "Cordis " + SessionKey::random().digits());
   add_entry(subject, "OU", unit);
   add_entry(subject, "CN", name);
   const X509_NAME* const issuing =

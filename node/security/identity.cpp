@@ -12,6 +12,7 @@
 #include "node/config/regular_file.h"
 #include "node/security/certificate.h"
 #include "node/security/keyring.h"
+#include "node/security/permissions.h"
 
 namespace cordis::node {
 namespace {
@@ -46,11 +47,13 @@ void check_time(const Certificate& certificate, const fs::path& file) {
                           fmt::gmtime(certificate.from())));
 }
 
-void check_document(const Certificate& authority, const fs::path& file) {
+/// @return what the document says, with its signature
+std::string check_document(const Certificate& authority, const fs::path& file) {
   const config::FileBytes document = config::read_regular_file(file.string(), kLargestDocument);
   if (!document.reason.empty()) refuse_security_file(file, "cannot be read: " + document.reason);
   if (!authority.has_signed_document(document.bytes))
     refuse_security_file(file, "is not signed by the authority of its folder");
+  return document.bytes;
 }
 
 }  // namespace
@@ -79,7 +82,9 @@ Identity identity_in(const fs::path& folder, const std::vector<Role>& roles,
     refuse_security_file(own.certificate, "is not signed by the authority of its folder");
   check_time(certificate, own.certificate);
   check_document(permitting, shared.governance);
-  check_document(permitting, own.permissions);
+  const std::string permissions = check_document(permitting, own.permissions);
+  if (permissions.find(subject_tag(certificate.subject())) == std::string::npos)
+    refuse_security_file(own.permissions, "is for another key than " + own.certificate.string());
   const std::optional<Role> role = role_of_word(key->role);
   if (!role)
     refuse_security_file(own.certificate,

@@ -31,9 +31,13 @@ constexpr std::chrono::hours kBefore{24};
 void write_file(const fs::path& path, const std::string& text, mode_t mode) {
   const config::OpenFile file(
       open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode));
-  if (file.number() < 0 || fchmod(file.number(), mode) != 0 ||
-      write(file.number(), text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error(path.string() + " cannot be written: " + std::strerror(errno));
+  const bool is_written =
+      file.number() >= 0 && fchmod(file.number(), mode) == 0 &&
+      write(file.number(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  if (is_written) return;
+  const std::string why = std::strerror(errno);
+  if (file.number() >= 0) unlink(path.c_str());
+  throw std::runtime_error(path.string() + " cannot be written: " + why);
 }
 
 void write_public(const fs::path& path, const std::string& text) {
@@ -79,19 +83,29 @@ void write_key(const fs::path& folder, const std::string& name, Role role,
   const Validity validity = validity_for(options.valid);
   const Certificate certificate = Certificate::make(
       name, role_word(role), Certificate::Use::kParticipant, validity, &authorities.identity);
+  const std::string permissions = authorities.permissions.signed_text(
+      permissions_text(role, certificate.subject(), options.sessions, validity));
   const KeyFiles files(folder, name);
-  write_public(files.certificate, certificate.certificate_pem());
-  write_private(files.key, certificate.key_pem());
-  write_public(files.permissions, authorities.permissions.signed_text(permissions_text(
-                                      role, certificate.subject(), options.sessions, validity)));
+  std::vector<fs::path> written;
+  try {
+    write_private(files.key, certificate.key_pem());
+    written.push_back(files.key);
+    write_public(files.permissions, permissions);
+    written.push_back(files.permissions);
+    write_public(files.certificate, certificate.certificate_pem());
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& file : written) fs::remove(file, ignored);
+    throw;
+  }
 }
 
 void fill_keyring(const fs::path& folder, const KeyOptions& options) {
   const Validity validity = validity_for(options.valid);
   const Authorities authorities{
-      Certificate::make("identity authority " + SessionKey::random().digits(), "authority",
-                        Certificate::Use::kIdentityAuthority, validity, nullptr),
-      Certificate::make("permissions authority " + SessionKey::random().digits(), "authority",
+      Certificate::make("identity authority", "authority", Certificate::Use::kIdentityAuthority,
+                        validity, nullptr),
+      Certificate::make("permissions authority", "authority",
                         Certificate::Use::kPermissionsAuthority, validity, nullptr)};
   const auto write_authority = [&](const char* name, const Certificate& authority) {
     const KeyFiles files(folder, name);

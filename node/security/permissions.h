@@ -20,6 +20,9 @@ struct Validity {
   std::time_t until = 0;
 };
 
+/// How permissions name the subject of the certificate that they are for, as RFC 2253 writes it.
+std::string subject_tag(const std::string& subject);
+
 /// What the owner of a certificate may read and write.
 /// @param subject   of its certificate, as RFC 2253 writes it
 /// @param sessions  in which; empty: in all

@@ -461,6 +461,18 @@ TEST(Launch, HasNoNetworkUnlessItSaysSoOrTheCommandLineDoes) {
   EXPECT_EQ(launch.network->server_port, 11811);
 }
 
+TEST(Launch, RefusesKeysBesideADiscoveryServer) {
+  Problems problems;
+  static_cast<void>(
+      load_launch_text("cordis: 1\nsecurity: secrets\nnodes: {sim: {node: sim_node}}\n", "l.yaml",
+                       {"domain=7", "network.discovery_server=10.0.0.9:11811"}, problems));
+
+  ASSERT_EQ(problems.all().size(), 1u);
+  EXPECT_EQ(problems.all()[0].place.line, 2);
+  EXPECT_EQ(problems.all()[0].message, "a secured session has no discovery server");
+  EXPECT_EQ(problems.all()[0].hint, "name the hosts with 'peers', or set 'multicast: true'");
+}
+
 TEST(Launch, RefusesNodesWhoseNamesHaveTheSameHash) {
   // two names of letters with the same FNV-1a value
   Problems problems;

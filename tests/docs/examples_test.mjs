@@ -301,6 +301,10 @@ test('cordis new and schema', async () => {
   }
 });
 
+test('cordis keys', async () => {
+  for (const [line, origin] of ofVerb('keys')) await runs(line, origin); // in their order: one is made before it is listed
+});
+
 test('cordis cut, merge, info, echo and recover', async () => {
   for (const verb of ['cut', 'merge', 'info', 'echo', 'recover']) {  // a merge takes what a cut has made
     for (const [line, origin] of ofVerb(verb).filter(([text]) => isOfTake(text))) await runs(line, origin);
@@ -402,7 +406,7 @@ test('cordis test lists what it would run', async () => {
 test('no verb has examples that nothing runs', () => {
   const RUN = [
     'run', 'ctl', 'check', 'lab', 'simulate', 'doctor', 'bench', 'resim', 'test', 'cut', 'merge', 'info', 'recover',
-    'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot', 'new', 'schema',
+    'export', 'record', 'play', 'list', 'echo', 'hz', 'get', 'film', 'chronogram', 'plot', 'new', 'schema', 'keys',
   ];
   for (const [line, origin] of all) assert.ok(RUN.includes(line.split(' ')[1]), `${origin}: ${line}`);
   for (const verb of RUN) assert.ok(ofVerb(verb).length > 0, verb);

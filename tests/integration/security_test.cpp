@@ -108,8 +108,8 @@ class SecuredClock : public ::testing::TestWithParam<const char*> {};
 TEST_P(SecuredClock, RunsWithAllNodesAndIsRecorded) {
   SecuredFolder session(GetParam(), own_domain());
   const std::string take = (session.folder / "take.mcap").string();
-  ChildProcess& launcher = session.start({program_path("cordis"), "run", session.launch_file(),
-                                          "--no-color", "--record", take, "--duration", "3s"});
+  ChildProcess& launcher = session.start(
+      {program_path("cordis"), "run", session.launch_file(), "--no-color", "--record", take});
   dds::Participant participant(
       session.member(own_domain(), "observer", Role::kController, GetParam()));
   StatusWatch status(participant);
@@ -123,6 +123,7 @@ TEST_P(SecuredClock, RunsWithAllNodesAndIsRecorded) {
       {"ctl", session.launch_file(), "set", "wall.stiffness_n_per_m=150", "--timeout", "60s"});
   EXPECT_EQ(set.code, 0) << set.output;
 
+  launcher.signal(SIGINT);
   EXPECT_EQ(launcher.wait(kPatience), 0) << launcher.output();
   EXPECT_NE(launcher.output().find(", secured"), std::string::npos) << launcher.output();
   const Ended info = SecuredFolder::ended({"info", take});

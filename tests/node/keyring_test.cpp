@@ -226,6 +226,37 @@ TEST_F(Keyring, LetsNobodySignPermissionsWithAKeyOfAParticipant) {
   EXPECT_FALSE(permitting.has_signed_document(changed));
 }
 
+TEST_F(Keyring, RefusesPermissionsOfAnotherKeyOfTheSameName) {
+  KeyOptions limited;
+  limited.sessions = {"bow"};
+  add_key(ring_, "device", Role::kDevice, folder_ / "handed", limited);
+  const KeyFiles mine(ring_, "device");
+  const KeyFiles theirs(folder_ / "handed", "device");
+  EXPECT_EQ(why_no_identity(folder_ / "handed", Role::kDevice), "");
+
+  fs::copy_file(mine.permissions, theirs.permissions, fs::copy_options::overwrite_existing);
+
+  EXPECT_THAT(why_no_identity(folder_ / "handed", Role::kDevice),
+              HasSubstr("device.permissions.p7s is for another key than"));
+}
+
+TEST_F(Keyring, LeavesNothingOfAKeyThatCannotBeWritten) {
+  const KeyFiles files(ring_, "foo");
+  for (const fs::path& in_the_way : {files.key, files.permissions, files.certificate}) {
+    fs::create_symlink(folder_ / "target", in_the_way);
+
+    EXPECT_THAT(refusal([&] { add_key(ring_, "foo", Role::kView, ring_, {}); }),
+                HasSubstr(in_the_way.string() + " cannot be written"));
+
+    fs::remove(in_the_way);
+    EXPECT_FALSE(fs::exists(folder_ / "target"));
+    for (const fs::path& file : {files.key, files.permissions, files.certificate})
+      EXPECT_FALSE(fs::exists(fs::symlink_status(file))) << file;
+  }
+  add_key(ring_, "foo", Role::kView, ring_, {});
+  EXPECT_EQ(why_no_identity(ring_, Role::kView), "");
+}
+
 TEST_F(Keyring, LimitsAKeyToItsSessionsWhereThatIsAsked) {
   const std::string all = permissions_text(Role::kSim, "CN=x", {}, {});
   const std::string some = permissions_text(Role::kSim, "CN=x", {"bow", "string"}, {});

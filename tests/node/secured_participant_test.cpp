@@ -26,6 +26,7 @@
 #include "node/dds/reader.h"
 #include "node/dds/secure_datagram.h"
 #include "node/dds/udp_address.h"
+#include "node/dds/wire_version.h"
 #include "node/dds/writer.h"
 #include "node/security/identity.h"
 #include "node/security/keyring.h"
@@ -211,46 +212,93 @@ TEST_F(SecuredParticipant, SharesNothingWithAStrangerOfAnotherKeyring) {
 }
 
 /// A message in the clear that carries the GUID of a writer.
+/// @param hides  behind a submessage whose length is none of 4, so that who goes on at its end reads
+/// others than Fast DDS, which goes on at the next multiple of 4
 std::vector<std::uint8_t> forged_datagram(const WriterId& writer, std::uint32_t number,
-                                          msg::GestureForces& force) {
+                                          msg::GestureForces& force, bool hides) {
   std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 3, 0x01, 0x0f};
   datagram.insert(datagram.end(), writer.begin(), writer.begin() + 12);
   const std::vector<std::byte> payload = encode(force);
   const auto put = [&datagram](std::initializer_list<int> bytes) {
     for (const int byte : bytes) datagram.push_back(static_cast<std::uint8_t>(byte));
   };
-  const std::size_t length = 20 + payload.size();
+  const int more = hides ? 4 : 0;  // of the header of the sample
+  const std::size_t length = 20 + payload.size() + static_cast<std::size_t>(more);
+  if (hides) put({0x80, 0x01, 1, 0, 0, 0x80, 0, 0});
   put({0x15, 0x05, static_cast<int>(length & 0xff), static_cast<int>(length >> 8)});
-  put({0, 0, 16, 0, 0, 0, 0, 0});  // no inline QoS, to every reader
+  put({0, 0, 16 + more, 0, 0, 0, 0, 0});  // no inline QoS, to every reader
   datagram.insert(datagram.end(), writer.begin() + 12, writer.end());
-  put({0, 0, 0, 0, static_cast<int>(number & 0xff), static_cast<int>(number >> 8), 0, 0});
+  put({0, 0, 0, 0, static_cast<int>(number & 0xff), static_cast<int>(number >> 8)});
+  if (hides) {
+    put({0x80, 0x01, 0, 0, 0, 0});
+  } else {
+    put({0, 0});
+  }
   for (const std::byte byte : payload) datagram.push_back(std::to_integer<std::uint8_t>(byte));
   return datagram;
 }
 
-/// Sends a datagram to all that a process of this host can be in the domain.
+/// Sends a datagram to all that a process of this host can be in the domain, for samples and for
+/// discovery.
 void send_to_all(const std::vector<std::uint8_t>& datagram) {
   const int file = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   for (int index = 0; index < 64; ++index) {
-    const auto samples = static_cast<std::uint16_t>(discovery_port(test::own_domain(), index) + 1);
-    const sockaddr_in place = udp_address(samples, ipv4_of("127.0.0.1"));
-    sendto(file, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&place),
-           sizeof place);
+    const std::uint16_t discovery = discovery_port(test::own_domain(), index);
+    for (const std::uint16_t port : {discovery, static_cast<std::uint16_t>(discovery + 1)}) {
+      const sockaddr_in place = udp_address(port, ipv4_of("127.0.0.1"));
+      sendto(file, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&place),
+             sizeof place);
+    }
   }
   close(file);
 }
 
-/// True if a force that a stranger forges, in the name of sim, reaches the device.
-bool forgery_comes(Pair& pair) {
-  std::optional<WriterId> writer;
+WriterId writer_of_forces(const Pair& pair) {
   for (const FoundWriter& found : pair.device.writers()) {
-    if (found.topic.name == msg::TOPIC_FORCES) writer = found.id;
+    if (found.topic.name == msg::TOPIC_FORCES) return found.id;
   }
-  if (!writer) throw std::runtime_error("the device has found no writer");
+  throw std::runtime_error("the device has found no writer");
+}
+
+/// The announcement of a participant that says another name, process and version of the wire.
+std::vector<std::uint8_t> forged_announcement(const WriterId& of_participant) {
+  std::vector<std::uint8_t> list{0, 3, 0, 0};  // parameters, little-endian
+  const auto put = [](std::vector<std::uint8_t>& to, std::vector<std::uint8_t> bytes) {
+    to.insert(to.end(), bytes.begin(), bytes.end());
+  };
+  const std::vector<std::uint8_t> prefix(of_participant.begin(), of_participant.begin() + 12);
+  const auto put_octets = [&](std::uint8_t parameter, std::string text) {
+    const auto size = static_cast<std::uint8_t>(text.size());
+    text.resize((text.size() + 3) / 4 * 4);
+    put(list, {parameter, 0, static_cast<std::uint8_t>(4 + text.size()), 0, size, 0, 0, 0});
+    put(list, {text.begin(), text.end()});
+  };
+  put(list, {0x15, 0, 4, 0, 2, 3, 0, 0});   // version of the protocol
+  put(list, {0x16, 0, 4, 0, 1, 15, 0, 0});  // vendor
+  put(list, {0x50, 0, 16, 0});
+  put(list, prefix);
+  put(list, {0, 0, 1, 0xc1});
+  put(list, {0x58, 0, 4, 0, 0x3f, 0x0c, 0, 0});                                // its endpoints
+  put(list, {0x02, 0, 8, 0, 0xff, 0xff, 0xff, 0x7f, 0xff, 0xff, 0xff, 0xff});  // no lease
+  put_octets(0x62, std::string("secured/sim") + '\0');
+  put_octets(0x2c, "process x" + wire_version_mark(77));
+  put(list, {1, 0, 0, 0});
+
+  std::vector<std::uint8_t> datagram{'R', 'T', 'P', 'S', 2, 3, 0x01, 0x0f};
+  put(datagram, prefix);
+  put(datagram, {0x15, 0x05, static_cast<std::uint8_t>(20 + list.size()), 0, 0, 0, 16, 0});
+  put(datagram, {0, 1, 0, 0xc7, 0, 1, 0, 0xc2, 0, 0, 0, 0, 0, 0, 0, 0x40});  // a high number
+  put(datagram, list);
+  return datagram;
+}
+
+/// True if a force that a stranger forges, in the name of sim, reaches the device.
+bool forgery_comes(Pair& pair, bool hides) {
+  const WriterId writer = writer_of_forces(pair);
   msg::GestureForces forged = force_of(1'000'000, 666.0);
   bool has_come = false;
   for (std::uint32_t number = 30'000; number < 30'050 && !has_come; ++number) {
-    send_to_all(forged_datagram(*writer, number, forged));
+    send_to_all(forged_datagram(writer, number, forged, hides));
     pair.read.wait(10ms);
     for (msg::GestureForces found; pair.read.take(found);)
       has_come = has_come || found.force_n()[0] == 666.0;
@@ -261,11 +309,35 @@ bool forgery_comes(Pair& pair) {
 TEST_F(SecuredParticipant, TakesNoMessageInTheClearInTheNameOfAnother) {
   Pair open(plain("sim"), plain("hand"));
   ASSERT_TRUE(open.one_comes());
-  EXPECT_TRUE(forgery_comes(open)) << "the forgery is one: without security it is taken";
+  EXPECT_TRUE(forgery_comes(open, false)) << "the forgery is one: without security it is taken";
+  EXPECT_TRUE(forgery_comes(open, true));
 
   Pair pair(member("sim", Role::kSim), member("hand", Role::kDevice));
   ASSERT_TRUE(pair.one_comes());
-  EXPECT_FALSE(forgery_comes(pair));
+  EXPECT_FALSE(forgery_comes(pair, false));
+  EXPECT_FALSE(forgery_comes(pair, true));
+  EXPECT_TRUE(pair.one_comes());
+}
+
+TEST_F(SecuredParticipant, BelievesNoAnnouncementInTheNameOfOneThatHasProvenWhoItIs) {
+  const auto has_mismatch = [](Pair& pair) {
+    const std::vector<std::uint8_t> announcement = forged_announcement(writer_of_forces(pair));
+    bool found = false;
+    for (int i = 0; i < 20 && !found; ++i) {
+      send_to_all(announcement);
+      pair.read.wait(10ms);
+      found = !pair.device.mismatch().empty();
+    }
+    return found;
+  };
+  {
+    Pair open(plain("sim"), plain("hand"));
+    ASSERT_TRUE(open.one_comes());
+    EXPECT_TRUE(has_mismatch(open)) << "the announcement is one: without security it is believed";
+  }
+  Pair pair(member("sim", Role::kSim), member("hand", Role::kDevice));
+  ASSERT_TRUE(pair.one_comes());
+  EXPECT_FALSE(has_mismatch(pair));
   EXPECT_TRUE(pair.one_comes());
 }
 
@@ -311,6 +383,9 @@ TEST(SecureDatagram, IsFitWhenItIsEncryptedOrFindsParticipants) {
   EXPECT_FALSE(is_fit(message(sample)));
   EXPECT_FALSE(is_fit(message(both)));
   EXPECT_FALSE(is_fit(message(too_long)));
+  // Fast DDS goes on 8 bytes behind the beginning of the first, and not 5.
+  EXPECT_FALSE(is_fit(message({0x80, 0x01, 1, 0, 0, 0x80, 0, 0, 0})));
+  EXPECT_TRUE(is_fit(message({0x80, 0x01, 4, 0, 0, 0, 0, 0, 0x80, 0, 0, 0})));
   EXPECT_FALSE(is_fit(message({0x07, 1, 0, 0})));  // heartbeat
   EXPECT_FALSE(is_fit(message({0x06, 1, 0, 0})));  // acknowledgement
   EXPECT_FALSE(is_fit(message({0x08, 1, 0, 0})));  // gap
