@@ -462,10 +462,13 @@ TEST(Launch, HasNoNetworkUnlessItSaysSoOrTheCommandLineDoes) {
 }
 
 TEST(Launch, RefusesKeysBesideADiscoveryServer) {
+  const std::string text = R"(cordis: 1
+security: secrets
+nodes: {sim: {node: sim_node}}
+)";
   Problems problems;
-  static_cast<void>(
-      load_launch_text("cordis: 1\nsecurity: secrets\nnodes: {sim: {node: sim_node}}\n", "l.yaml",
-                       {"domain=7", "network.discovery_server=10.0.0.9:11811"}, problems));
+  static_cast<void>(load_launch_text(
+      text, "l.yaml", {"domain=7", "network.discovery_server=10.0.0.9:11811"}, problems));
 
   ASSERT_EQ(problems.all().size(), 1u);
   EXPECT_EQ(problems.all()[0].place.line, 2);
