@@ -86,9 +86,7 @@ void add_keys_verb(CommandLine& line) {
   verb.required_word("new|add|list", words->action, "What to do");
   verb.required_word("FOLDER", words->folder, "The keyring: `security: FOLDER` of a launch file");
   verb.optional_word("NAME", words->name, "Name of the key that is added");
-  verb.option("--role", "ROLE", words->role,
-              "What the key is for: sim, device, view, view_that_commands, recorder, controller, "
-              "launcher");
+  verb.option("--role", "ROLE", words->role, "What the key is for: " + node::role_words());
   verb.option("-o,--out", "FOLDER", words->out, "Where to: what the owner of the key needs");
   verb.list("--sessions", "NAME,...", words->sessions, "Only for sessions of these names");
   verb.option("--days", "N", words->days, "How long the keys are valid (3650)");

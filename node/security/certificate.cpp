@@ -202,10 +202,6 @@ Certificate Certificate::read(const fs::path& file, const fs::path& key_file) {
   return Certificate(std::move(found));
 }
 
-std::string Certificate::name() const {
-  return entry(impl_->certificate.get(), NID_commonName);
-}
-
 std::string Certificate::unit() const {
   return entry(impl_->certificate.get(), NID_organizationalUnitName);
 }

@@ -37,7 +37,6 @@ class Certificate {
   Certificate(Certificate&&) noexcept;
   Certificate& operator=(Certificate&&) noexcept;
 
-  std::string name() const;     ///< common name
   std::string unit() const;     ///< organisational unit
   std::string subject() const;  ///< whole, as RFC 2253 writes it
   std::time_t from() const;     ///< [s since 1970]

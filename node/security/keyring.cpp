@@ -48,7 +48,7 @@ void write_private(const fs::path& path, const std::string& text) {
   write_file(path, text, S_IRUSR | S_IWUSR);
 }
 
-/// @return false when it is there already
+/// @return false when the folder exists
 bool make_folder(const fs::path& folder) {
   if (mkdir(folder.c_str(), S_IRWXU) == 0) return true;
   if (errno == EEXIST) return false;

@@ -31,7 +31,7 @@ bool is_key_name(const std::string& name);
 /// Makes a keyring in a folder that is not there yet: two authorities, the rules of the session, the
 /// key of its commands, and a key for each role, named after it. The folder has mode 0700, its
 /// private files 0600.
-/// @throws std::runtime_error when the folder is there, or cannot be written
+/// @throws std::runtime_error when the folder exists, or cannot be written
 void make_keyring(const std::filesystem::path& folder, const KeyOptions& options);
 
 /// Makes one more key, and writes into a folder all that its owner needs, and nothing by which more

@@ -15,6 +15,7 @@
 #include "tests/device/faders.h"
 #include "tests/integration/scenes.h"
 #include "tests/support/child_process.h"
+#include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
@@ -48,19 +49,6 @@ start_ramp_s: 0.05
 driver: firefader
 firefader: {full_scale_n: 5, lost_after_s: 0.2, retry_s: 0.05, port: <tty>}
 )";
-constexpr const char* kScriptedKey = R"(cordis: 1
-axes: 1
-travel_m: 0.04
-rest: top
-rate_hz: 1000
-driver: script
-script:
-  interpolation: linear
-  positions:
-    - {at_s: 0, m: 0}
-    - {at_s: 0.2, m: -0.01}
-)";
-
 /// How late a thread wakes on any core: what the machine itself does to all processes.
 class Lateness {
  public:
@@ -157,7 +145,8 @@ class FaultySession {
         faults_(options, index, is_realtime_) {
     folder_.add("scene.yaml", wall_scene(200.0));
     const std::string tty = folder_.path() / "tty";
-    folder_.add("key.yaml", is_realtime_ ? filled(kPressedFader, {{"tty", tty}}) : kScriptedKey);
+    folder_.add("key.yaml",
+                is_realtime_ ? filled(kPressedFader, {{"tty", tty}}) : steady_key(-0.01, 0.0));
     const std::string clock = is_realtime_ ? "realtime" : "lockstep";
     const std::string launch =
         folder_.add("launch.yaml", filled(kLaunchOfFaults, {{"clock", clock}}));
@@ -194,19 +183,11 @@ class FaultySession {
     if (!missing.empty()) return "no more of " + missing;
     page_.visit(statuses_->of("view").text());
     const int frames = page_.frames();
-    if (!wait_for([&] { return page_.frames() > frames + 3; })) return "no frames at the page";
-    if (is_realtime_ && !wait_for([&] { return board_.log.newest() > 0.0; }))
+    if (!eventually([&] { return page_.frames() > frames + 3; }, options_.patience))
+      return "no frames at the page";
+    if (is_realtime_ && !eventually([&] { return board_.log.newest() > 0.0; }, options_.patience))
       return "no force at the board";
     return "";
-  }
-
-  bool wait_for(const std::function<bool()>& condition) const {
-    const auto limit = Clock::now() + options_.patience;
-    while (!condition()) {
-      if (Clock::now() > limit) return false;
-      std::this_thread::sleep_for(1ms);
-    }
-    return true;
   }
 
   std::string play(const Fault& fault) {
@@ -245,8 +226,10 @@ class FaultySession {
     const bool is_long = fault.stopped_s == 0.0 || fault.stopped_s >= 1.0;
     if (!is_realtime_ || !makes_force || !is_long) return "";
     // There may be none already: the loop had stalled, and let go, in the moment of the fault.
-    if (!wait_for([&] { return board_.log.newest() == 0.0 || board_.log.zero_since(began) != 0; }))
-      return what + ": the motor keeps its force";
+    const auto has_none = [&] {
+      return board_.log.newest() == 0.0 || board_.log.zero_since(began) != 0;
+    };
+    if (!eventually(has_none, options_.patience)) return what + ": the motor keeps its force";
     const std::int64_t zero_nsec = board_.log.zero_since(began);
     const double zero_s = zero_nsec == 0 ? 0.0 : 1e-9 * static_cast<double>(zero_nsec - began);
     const double late_s = lateness_.take_worst();

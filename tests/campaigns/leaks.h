@@ -6,8 +6,8 @@
 
 namespace cordis::test {
 
-/// What there is on the host before the sessions of a campaign, and what is there more afterwards.
-/// Made and asked while no session runs.
+/// Compares the ports and the shared memory of this host before and after the sessions of a campaign.
+/// Precondition of both calls: no session of the domain runs.
 class Leaks {
  public:
   Leaks();

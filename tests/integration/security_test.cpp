@@ -318,7 +318,7 @@ TEST_F(SecuredHosts, ShareNothingWithAStrangerOfCycloneDds) {
   EXPECT_EQ(status_->of("sim").text().find("wire"), std::string::npos);
 }
 
-/// Without keys the same program reads and writes: the test above is not blind.
+/// Control of the test above: this program reads and writes a session without keys.
 TEST(SecuredHostsOff, AreOpenToAStrangerOfCycloneDds) {
   if (const std::string why_not = TwoHosts::why_not(); !why_not.empty())
     GTEST_SKIP() << "two hosts are not permitted here: " << why_not;
