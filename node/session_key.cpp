@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "node/config/open_file.h"
+#include "node/new_file.h"
 #include "node/random_token.h"
 #include "node/runtime_folder.h"
 
@@ -101,14 +102,7 @@ SessionKey read_key_file(const fs::path& path) {
 void write_key_file(const fs::path& path, const SessionKey& key) {
   const fs::path draft = path.string() + ".draft";
   fs::remove(draft);
-  const std::string line = key.digits() + "\n";
-  {
-    const config::OpenFile file(open(
-        draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR));
-    if (file.number() < 0 || fchmod(file.number(), S_IRUSR | S_IWUSR) != 0 ||
-        write(file.number(), line.data(), line.size()) != static_cast<ssize_t>(line.size()))
-      refuse_key_file(path, std::string("cannot be written: ") + std::strerror(errno));
-  }
+  write_new_file(draft, key.digits() + "\n", S_IRUSR | S_IWUSR);
   fs::rename(draft, path);
 }
 

@@ -7,11 +7,10 @@
 #include <stdexcept>
 #include <string_view>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "node/config/open_file.h"
+#include "node/new_file.h"
 #include "node/security/certificate.h"
 #include "node/security/permissions.h"
 #include "node/session_key.h"
@@ -28,24 +27,12 @@ constexpr std::size_t kLongestKeyName = 64;
 // Clocks of hosts differ: a key counts a day before it is made.
 constexpr std::chrono::hours kBefore{24};
 
-void write_file(const fs::path& path, const std::string& text, mode_t mode) {
-  const config::OpenFile file(
-      open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode));
-  const bool is_written =
-      file.number() >= 0 && fchmod(file.number(), mode) == 0 &&
-      write(file.number(), text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  if (is_written) return;
-  const std::string why = std::strerror(errno);
-  if (file.number() >= 0) unlink(path.c_str());
-  throw std::runtime_error(path.string() + " cannot be written: " + why);
-}
-
 void write_public(const fs::path& path, const std::string& text) {
-  write_file(path, text, S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
+  write_new_file(path, text, S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
 }
 
 void write_private(const fs::path& path, const std::string& text) {
-  write_file(path, text, S_IRUSR | S_IWUSR);
+  write_new_file(path, text, S_IRUSR | S_IWUSR);
 }
 
 /// @return false when the folder exists
