@@ -10,6 +10,9 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "cli/session_address.h"
+#include "node/terminal_text.h"
+
 namespace cordis::cli {
 namespace {
 
@@ -31,19 +34,24 @@ bool flush_output() {
                            std::strerror(reason != 0 ? reason : EIO));
 }
 
-SilenceNote::SilenceNote(std::string verb, std::string session, std::string pattern)
-    : verb_(std::move(verb)), session_(std::move(session)), pattern_(std::move(pattern)) {}
+SilenceNote::SilenceNote(std::string verb, std::string session, std::string pattern,
+                         const dds::Participant& participant)
+    : verb_(std::move(verb)),
+      session_(std::move(session)),
+      pattern_(std::move(pattern)),
+      participant_(participant) {}
 
 void SilenceNote::update(std::uint64_t received) {
   if (done_ || (received == 0 && std::chrono::steady_clock::now() < began_ + kLongSilence)) return;
   done_ = true;
-  if (received == 0) std::fprintf(stderr, "cordis %s: %s\n", verb_.c_str(), text().c_str());
+  if (received == 0) node::print_text(stderr, "cordis " + verb_ + ": " + text() + "\n");
 }
 
 std::string SilenceNote::text() const {
   const std::string what =
       "no message has come" + (pattern_.empty() ? std::string() : " on '" + pattern_ + "'");
-  if (session_.empty()) return what;
+  const std::string mismatch = participant_.mismatch();
+  if (session_.empty() || !mismatch.empty()) return with_reason(what, mismatch);
   return what + "; `cordis info " + session_ + "` lists the topics";
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "node/dds/participant.h"
+
 namespace cordis::cli {
 
 /// Hands on what was printed. @return false when its reader has gone, as `head` does
@@ -15,17 +17,20 @@ bool flush_output();
 class SilenceNote {
  public:
   /// @param pattern  of topics; empty: all
-  SilenceNote(std::string verb, std::string session, std::string pattern);
+  /// @param participant  receives; stays until the note has gone
+  SilenceNote(std::string verb, std::string session, std::string pattern,
+              const dds::Participant& participant);
 
   /// @param received  how many messages have come since it was made
   void update(std::uint64_t received);
-  /// The sentence.
+  /// The sentence, and what of the session cannot be received.
   std::string text() const;
 
  private:
   const std::string verb_;
   const std::string session_;
   const std::string pattern_;
+  const dds::Participant& participant_;
   const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   bool done_ = false;
 };

@@ -102,6 +102,10 @@ SessionAddress address_of(const std::string& named, const std::string& domain,
   return address;
 }
 
+std::string with_reason(const std::string& text, const std::string& reason) {
+  return reason.empty() ? text : text + ": " + reason;
+}
+
 std::optional<node::Identity> identity_for(const SessionAddress& address, node::Role role) {
   if (address.keyring.empty()) return std::nullopt;
   return node::identity_in(

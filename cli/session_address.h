@@ -32,6 +32,9 @@ SessionAddress address_of(const std::string& named, const std::string& domain,
                           const std::string& name, bool is_any = false,
                           const std::string& keyring = "");
 
+/// A sentence, and behind a colon the reason, where one is known.
+std::string with_reason(const std::string& text, const std::string& reason);
+
 /// The key with which a verb takes part in a session; none when the session is not secured.
 /// @param role  that the verb plays best
 /// @throws std::runtime_error as node::identity_in()

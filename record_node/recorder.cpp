@@ -142,6 +142,10 @@ RecorderFigures Recorder::figures() const {
   return impl_->figures();
 }
 
+std::string Recorder::mismatch() const {
+  return impl_->participant.mismatch();
+}
+
 RecorderFigures Recorder::close() {
   impl_->close();
   return impl_->figures();

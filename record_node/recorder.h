@@ -63,6 +63,8 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   RecorderFigures figures() const;
+  /// What of the session it cannot receive, and why: dds::Participant::mismatch().
+  std::string mismatch() const;
 
   /// Writes what waits and ends the file. @return the last figures
   RecorderFigures close();

@@ -49,7 +49,7 @@ int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
   const record::MessageTypes types = known_message_types(words.idl_files);
   node::install_stop_signals();
   TopicListener listener(address, words.topic, true);
-  SilenceNote silence("echo", address.session, words.topic);
+  SilenceNote silence("echo", address.session, words.topic, listener.participant());
   std::uint64_t printed = 0;
   std::uint64_t received = 0;
   while (!node::stop_requested() && (!count || printed < *count)) {

@@ -28,8 +28,9 @@ int get(const GetWords& words) {
   ControlLine line(address);
   const auto replies = line.ask("sim_node", command.verb, command.argument, timeout);
   if (replies.empty())
-    throw std::runtime_error("no sim_node of session '" + address.session + "' answers within " +
-                             words.timeout);
+    throw std::runtime_error(with_reason(
+        "no sim_node of session '" + address.session + "' answers within " + words.timeout,
+        line.mismatch()));
   int result = kSuccess;
   for (const msg::ControlReply& reply : replies) {
     node::print_text(reply.accepted() ? stdout : stderr, reply.text() + "\n");

@@ -87,7 +87,7 @@ int hz(const HzWords& words) {
   const SessionAddress address = words.target.address();
   node::install_stop_signals();
   TopicListener listener(address, words.topic, false);
-  SilenceNote silence("hz", address.session, words.topic);
+  SilenceNote silence("hz", address.session, words.topic, listener.participant());
   std::map<std::string, Traffic> topics;
   const auto began = Clock::now();
   auto table = began;

@@ -63,9 +63,10 @@ std::string session_text(const std::string& session, const std::string& pattern,
     topics[writer.topic].insert(processes[prefix]);
   }
   if (topics.empty())
-    throw std::runtime_error(
+    throw std::runtime_error(with_reason(
         "no process writes " + (pattern.empty() ? std::string() : "'" + pattern + "' ") +
-        "in session '" + address.session + "' of domain " + std::to_string(address.domain));
+            "in session '" + address.session + "' of domain " + std::to_string(address.domain),
+        participant.mismatch()));
   std::string text =
       fmt::format("session '{}' in DDS domain {}\n", address.session, address.domain);
   for (const auto& [topic, writers] : topics) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cli/topic_listener.h"
@@ -30,7 +31,7 @@ std::string session_of(const dds::WriterId& writer, const std::vector<dds::Peer>
 
 }  // namespace
 
-std::map<std::string, NodeHosts> sessions_in_domain(SessionAddress address) {
+DomainSessions sessions_in_domain(SessionAddress address) {
   address.session.clear();
   TopicListener listener(address, msg::TOPIC_STATUS, /*with_bytes=*/true);
   std::map<std::string, NodeHosts> sessions;
@@ -52,7 +53,7 @@ std::map<std::string, NodeHosts> sessions_in_domain(SessionAddress address) {
     }
   }
   std::erase_if(sessions, [](const auto& entry) { return entry.second.empty(); });
-  return sessions;
+  return {std::move(sessions), listener.participant().mismatch()};
 }
 
 }  // namespace cordis::cli

@@ -71,7 +71,8 @@ std::string age_text(double seconds) {
 
 int list_domain(const ListWords& words) {
   const SessionAddress address = words.domain.address();
-  const auto sessions = sessions_in_domain(address);
+  const auto [sessions, mismatch] = sessions_in_domain(address);
+  if (!mismatch.empty()) node::print_text(stderr, "cordis list: " + mismatch + "\n");
   if (words.json) {
     nlohmann::json all = nlohmann::json::array();
     for (const auto& [session, members] : sessions) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
@@ -101,6 +102,7 @@ int record(const RecordWords& words) {
     node::remember_take(node::runtime_folder(), address.session, config.out);
   ProgressLine line;
   record::RecorderFigures before;
+  std::string mismatch;
   while (!node::wait_for_stop(kRecordProgress)) {
     const record::RecorderFigures now = recorder.figures();
     const double spent = now.seconds - before.seconds;
@@ -108,6 +110,10 @@ int record(const RecordWords& words) {
         static_cast<double>(now.file_bytes) - static_cast<double>(before.file_bytes);
     line.show(progress(now, spent > 0.0 ? grown / spent / 1e6 : 0.0));
     before = now;
+    if (const std::string found = recorder.mismatch(); found != mismatch) {
+      mismatch = found;
+      if (!found.empty()) spdlog::warn("{}", found);
+    }
     const bool long_enough = longest && seconds_of(*longest) <= now.seconds;
     if (now.is_over || long_enough) break;
   }

@@ -36,7 +36,9 @@ LiveSource::LiveSource(const std::string& session, const std::string& domain) : 
   frames_ = std::make_unique<dds::Reader<msg::SceneFrame>>(*participant_, dds::Topic::kFrame);
   signals_ = std::make_unique<dds::Reader<msg::SceneSignals>>(*participant_, dds::Topic::kSignals);
   if (!wait_for(*descriptions_, description_))
-    throw std::runtime_error("session '" + session + "' describes no scene: has it a sim_node?");
+    throw std::runtime_error(
+        with_reason("session '" + session + "' describes no scene: has it a sim_node?",
+                    participant_->mismatch()));
   while (descriptions_->take(description_)) {
   }
   const std::string fault = viz::fault_of(description_);

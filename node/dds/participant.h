@@ -123,8 +123,8 @@ class Participant {
   std::uint64_t rejoin_count() const noexcept;
 
   /// Says in a sentence which process of the session cannot be received, or cannot receive, because
-  /// it speaks another version of the wire or was started with another launch file; empty while
-  /// there is none.
+  /// it speaks another version of the wire or was started with another launch file, or because the
+  /// two have not keys of one keyring; empty while there is none.
   std::string mismatch() const;
 
   struct Impl;

@@ -31,7 +31,8 @@ constexpr std::uint32_t kLargestDatagramBytes = 1400;
 // In a secured session what authenticates a participant comes in one piece: its certificate and its
 // permissions have 6 kB.
 constexpr std::uint32_t kLargestSecuredBytes = 16384;
-constexpr int kLateAnnouncementLooks = 5;               // [s] longer than any datagram is under way
+constexpr int kUnprovenLooks = 3;          // [s] others of the session prove who they are sooner
+constexpr int kLateAnnouncementLooks = 5;  // [s] longer than any datagram is under way
 constexpr const char* kDiscoveryGroup = "239.255.0.1";  // [DDSI 9.6.1.4]
 constexpr const char* kServerPrefix =
     "44.53.00.5f.45.50.52.4f.53.49.4d.41";  // `fastdds discovery -i 0`
@@ -169,6 +170,19 @@ bool has_ended(const Peer& peer, const std::string& own_address) noexcept {
   return state == ProcessState::kEnded || (silent && is_free(peer.discovery_port, own_address));
 }
 
+std::string keyless_text(const std::string& peer) {
+  return "'" + peer + "' is secured, and this process has no keys: it receives nothing of it; " +
+         "name the keys with 'security' in the launch file, or with --security FOLDER";
+}
+
+/// @param is_secured  the peer has keys
+std::string unproven_text(const std::string& peer, bool is_secured) {
+  return "'" + peer + "' " +
+         (is_secured ? "and this process do not trust each other: their keys are of two keyrings; "
+                     : "has no keys, and this process has: they exchange nothing; ") +
+         "give all parts of a session keys of one keyring";
+}
+
 }  // namespace
 
 WriterId writer_id(const rtps::GUID_t& guid) {
@@ -228,6 +242,10 @@ Presence::~Presence() {
 }
 
 fast::Topic* Presence::topic(const TopicQos& row, fast::TypeSupport type) {
+  {
+    const std::lock_guard lock(mutex_);
+    own_topics_.insert(row.name);
+  }
   return topic(std::string(row.name), std::move(type));
 }
 
@@ -284,7 +302,10 @@ std::optional<FoundWriter> Presence::writer(const WriterId& id) const {
 
 std::string Presence::mismatch() const {
   const std::lock_guard lock(mutex_);
-  return mismatches_.empty() ? std::string() : mismatches_.begin()->second;
+  for (const auto& [guid, mismatch] : mismatches_) {
+    if (mismatch.topic.empty() || own_topics_.contains(mismatch.topic)) return mismatch.text;
+  }
+  return {};
 }
 
 void Presence::evaluate(const ParticipantPrefix& participant, std::uint32_t wire_version) {
@@ -293,8 +314,8 @@ void Presence::evaluate(const ParticipantPrefix& participant, std::uint32_t wire
   const std::lock_guard lock(mutex_);
   const auto peer = peers_.find(participant);
   const std::string name = peer == peers_.end() ? "another program" : peer->second.peer.name;
-  mismatches_[guid_of(participant)] =
-      wire_version_refusal(name, wire_version, config_.wire_version);
+  mismatches_[guid_of(participant)] = {
+      wire_version_refusal(name, wire_version, config_.wire_version), ""};
 }
 
 void Presence::drop_who_is_gone() noexcept {
@@ -303,6 +324,7 @@ void Presence::drop_who_is_gone() noexcept {
       if (has_ended(peer, config_.network.address)) drop(peer);
     }
     if (!config_.network.is_loopback()) look_at_those_elsewhere();
+    if (config_.security.is_on()) look_at_unproven();
   } catch (...) {  // out of memory: the next time
   }
 }
@@ -334,6 +356,23 @@ void Presence::look_at_those_elsewhere() {
   if (returned) on_return_();
 }
 
+/// Marks peers that have not proven who they are, if no process of the session has: they have other
+/// keys, or none.
+/// Anybody can announce such a peer, so beside trusted ones it changes nothing.
+void Presence::look_at_unproven() {
+  const std::lock_guard lock(mutex_);
+  const bool has_company = std::ranges::any_of(peers_, [this](const auto& entry) {
+    return entry.second.is_trusted && concerns(entry.second.peer);
+  });
+  for (auto& [prefix, known] : peers_) {
+    if (known.is_trusted || !concerns(known.peer)) continue;
+    known.unproven_looks = has_company ? 0 : known.unproven_looks + 1;
+    if (has_company) mismatches_.erase(guid_of(prefix));
+    if (known.unproven_looks >= kUnprovenLooks)
+      mismatches_[guid_of(prefix)] = {unproven_text(known.peer.name, known.is_secured), ""};
+  }
+}
+
 /// The lock must be held.
 void Presence::count_elsewhere() {
   peers_elsewhere_ = static_cast<int>(std::ranges::count_if(peers_, [this](const auto& entry) {
@@ -341,6 +380,10 @@ void Presence::count_elsewhere() {
     return entry.second.is_trusted && !peer.is_here() &&
            peer.name.starts_with(config_.session + "/");
   }));
+}
+
+bool Presence::concerns(const Peer& peer) const {
+  return config_.every_partition || peer.name.starts_with(config_.session + "/");
 }
 
 void Presence::on_participant_discovery(fast::DomainParticipant*,
@@ -369,6 +412,7 @@ void Presence::on_participant_discovery(fast::DomainParticipant*,
                     discovery_port_of(found.info, config_.network.address)};
     }
     known.is_trusted = known.is_trusted || !config_.security.is_on();
+    known.is_secured = !found.info.identity_token_.is_nil();
     known.record = &found.info;  // it stays where it is until the participant is dropped
     count_elsewhere();
     // Others, of other programs, announce leases that end. What is handed over is the record of
@@ -396,6 +440,8 @@ void Presence::evaluate_discovered(const ParticipantPrefix& participant) {
     if (known == peers_.end() || !known->second.is_trusted) return;
     const Peer& peer = known->second.peer;
     if (peer.name.starts_with(config_.session + "/")) version = marked_wire_version(peer.process);
+    if (known->second.is_secured && concerns(peer))
+      mismatches_[guid_of(participant)] = {keyless_text(peer.name), ""};
   }
   if (version) evaluate(participant, *version);
 }
@@ -410,6 +456,7 @@ void Presence::onParticipantAuthentication(fast::DomainParticipant*,
     const auto known = peers_.find(prefix);
     if (known == peers_.end()) return;
     known->second.is_trusted = true;
+    mismatches_.erase(guid_of(prefix));
     count_elsewhere();
   }
   evaluate_discovered(prefix);
@@ -465,10 +512,11 @@ void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
       what = "has another clock than that of this node";
     }
     if (what == nullptr) continue;
-    mismatches_[endpoint.guid()] = std::string("a process of session '") + config_.session +
-                                   "' does not share " + row.name +
-                                   " with this node: its launch file " + what +
-                                   "; start all nodes of a session with the same launch file";
+    mismatches_[endpoint.guid()] = {std::string("a process of session '") + config_.session +
+                                        "' does not share " + row.name +
+                                        " with this node: its launch file " + what +
+                                        "; start all nodes of a session with the same launch file",
+                                    row.name};
   }
 }
 

@@ -100,12 +100,21 @@ class Presence final : public fast::DomainParticipantListener {
     const eprosima::fastrtps::rtps::ParticipantProxyData* record = nullptr;
     std::chrono::steady_clock::time_point last_message;  // as of the last look
     int silent_looks = 0;
+    int unproven_looks = 0;     // in a secured session: without a proof of who it is
     bool has_returned = false;  // dropped before, and not yet known to speak
     bool is_trusted = false;    // in a secured session: has proven who it is
+    bool is_secured = false;    // has announced that it proves who it is
+  };
+
+  struct Mismatch {
+    std::string text;
+    std::string topic;  ///< it matters to a participant of this topic alone; empty: to all
   };
 
   std::vector<Peer> all_peers() const;
   void look_at_those_elsewhere();
+  void look_at_unproven();
+  bool concerns(const Peer& peer) const;  ///< it is of the session, or all are read
   void count_elsewhere();
   void evaluate_discovered(const ParticipantPrefix& participant);
   template <class Endpoint>
@@ -123,9 +132,10 @@ class Presence final : public fast::DomainParticipantListener {
 
   mutable std::mutex mutex_;
   std::map<ParticipantPrefix, Known> peers_;
-  std::set<ParticipantPrefix> dropped_;     // at some time
-  std::map<Guid, std::string> mismatches_;  // what is wrong with an endpoint
-  std::map<Guid, FoundWriter> writers_;     // of other participants
+  std::set<ParticipantPrefix> dropped_;  // at some time
+  std::map<Guid, Mismatch> mismatches_;  // what is wrong with an endpoint or a participant
+  std::set<std::string> own_topics_;     // of the table, that this participant reads or writes
+  std::map<Guid, FoundWriter> writers_;  // of other participants
 };
 
 }  // namespace cordis::dds

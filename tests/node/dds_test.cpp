@@ -532,6 +532,10 @@ TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
   EXPECT_NE(sim.mismatch().find("names no hot standby"), std::string::npos) << sim.mismatch();
   EXPECT_NE(device.mismatch().find("names a hot standby"), std::string::npos) << device.mismatch();
   EXPECT_EQ(neighbour.mismatch(), "");
+  with_standbys.node = "cordis 1";
+  const Participant onlooker(with_standbys);
+  ASSERT_TRUE(eventually([&] { return onlooker.writers().size() == 1; }));
+  EXPECT_EQ(onlooker.mismatch(), "") << "it reads no positions: this is no reason for its silence";
 
   const node::StatusPublisher publisher(sim, msg::KIND_SIM_NODE, 77, [](msg::NodeStatus&) {});
   Reader<msg::NodeStatus> reports(device, Topic::kStatus);
