@@ -126,6 +126,7 @@ dds::ParticipantConfig member_of(const TakePlayerConfig& config, const mcap::Rea
   dds::ParticipantConfig member{config.domain, config.session, name};
   member.wire_version = wire_version_of(take);
   member.standbys = has_standbys(take);
+  member.security = config.security;
   return member;
 }
 

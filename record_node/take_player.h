@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "node/dds/security.h"
 #include "node/session_key.h"
 
 namespace cordis::record {
@@ -23,6 +24,7 @@ struct TakePlayerConfig {
   int domain = 0;
   std::string session;
   std::optional<node::SessionKey> key{};  ///< key of the session
+  dds::Security security{};               ///< on: the session is secured
   double rate = 1.0;                      ///< kSlowestRate to kFastestRate
   bool loop = false;
   bool paused = false;                          ///< at the start

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,8 @@
 #include "node/config/launch.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
+#include "node/security/identity.h"
+#include "node/security/keyring.h"
 #include "node/session_key.h"
 #include "node/session_registry.h"
 #include "node/stop.h"
@@ -41,6 +44,7 @@ struct PlayWords {
   std::string duration;
   std::string session;
   std::string domain;
+  std::string keyring;
   std::vector<std::string> topics;
   std::vector<std::string> excluded;
   std::vector<std::string> remapped;
@@ -81,6 +85,23 @@ std::map<std::string, std::string> remapped_in(const std::vector<std::string>& w
   return names;
 }
 
+std::string absolute_folder(const std::string& folder) {
+  return std::filesystem::absolute(folder).lexically_normal().string();
+}
+
+/// The key of the player. Its folder has the key of commands too, unless the user has chosen one.
+dds::Security security_of_player(const std::string& keyring) {
+  if (keyring.empty()) return {};
+  const node::Identity identity = node::identity_in(keyring, {node::Role::kPlayer}, "");
+  if (identity.role != node::Role::kPlayer)
+    throw std::runtime_error("the key in " + keyring + " is for the role " +
+                             node::role_word(identity.role) +
+                             ", which plays no take: `cordis keys add` makes one for a player");
+  setenv("CORDIS_SESSION_KEY_FILE", node::SharedKeyFiles(keyring).command_key.c_str(),
+         /*replace=*/0);
+  return identity.security;
+}
+
 /// Its name and domain as the user wants them. @throws UsageError for a domain that is none
 node::SessionRequest request_of(const PlayWords& words, const std::string& session) {
   std::optional<int> domain;
@@ -98,6 +119,7 @@ node::SessionRequest request_of(const PlayWords& words, const std::string& sessi
           .launch_file = std::filesystem::absolute(words.take).string(),
           .nodes = {"play"},
           .is_player = true,
+          .keyring = words.keyring.empty() ? "" : absolute_folder(words.keyring),
           .has_key = true};
 }
 
@@ -122,8 +144,8 @@ int play_into(const node::SessionRegistration& registration, record::TakePlayerC
   config.key = node::key_of_session(config.session, config.domain);
   record::TakePlayer player(config);
   if (!player.damage().empty()) node::print_text(stderr, "cordis play: " + player.damage() + "\n");
-  std::fprintf(stderr, "session '%s' in DDS domain %d; Ctrl-C ends it\n", config.session.c_str(),
-               config.domain);
+  std::fprintf(stderr, "session '%s' in DDS domain %d%s; Ctrl-C ends it\n", config.session.c_str(),
+               config.domain, config.security.is_on() ? ", secured" : "");
   PlayKeys keys;
   ProgressLine line;
   record::TakePlayerFigures now = player.figures();
@@ -161,6 +183,7 @@ int play(const PlayWords& words) {
     node::print_text(stderr, std::string("cordis play: ") + error.what() + "\n");
     return kBadInput;
   }
+  config.security = security_of_player(words.keyring);
   node::install_log("play");
   node::install_stop_signals();
   std::optional<node::SessionRegistration> registration;
@@ -192,6 +215,8 @@ void add_play_verb(CommandLine& line) {
   verb.flag("--wait-for-readers", words->waits, "Begin when each topic has a reader");
   verb.option("--session", "NAME", words->session, "Name of the session (that of the take)");
   verb.option("--domain", "N", words->domain, "DDS domain (a free one)");
+  verb.option("--security", "FOLDER", words->keyring,
+              "Keys: the session is secured, and all that join it need keys");
   verb.examples(
       "It never joins a session that runs: the recorded hand would move its scene. Nor does a\n"
       "sim_node or device_node join it; viewers and recorders do.\n"

@@ -7,8 +7,8 @@ namespace cordis::node {
 
 const std::vector<Role>& all_roles() {
   static const std::vector<Role> kRoles{
-      Role::kSim,      Role::kDevice,     Role::kView,    Role::kViewThatCommands,
-      Role::kRecorder, Role::kController, Role::kLauncher};
+      Role::kSim,      Role::kDevice,     Role::kView,     Role::kViewThatCommands,
+      Role::kRecorder, Role::kController, Role::kLauncher, Role::kPlayer};
   return kRoles;
 }
 
@@ -28,6 +28,8 @@ const char* role_word(Role role) noexcept {
       return "controller";
     case Role::kLauncher:
       return "launcher";
+    case Role::kPlayer:
+      return "player";
   }
   return "";
 }
@@ -69,6 +71,8 @@ RoleTopics topics_of(Role role) {
       return {{msg::TOPIC_COMMAND}, {"*"}};
     case Role::kLauncher:
       return {{}, {msg::TOPIC_STATUS, msg::TOPIC_DESCRIPTION, msg::TOPIC_SIGNALS}};
+    case Role::kPlayer:
+      return {{"*"}, {msg::TOPIC_COMMAND}};
   }
   return {};
 }

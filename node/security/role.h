@@ -17,7 +17,8 @@ enum class Role : std::uint8_t {
   kViewThatCommands,  ///< viz_node whose pages may command and drag, as far as the launch file lets them
   kRecorder,          ///< record_node, `cordis record`
   kController,        ///< `cordis ctl`, and the verbs that read a session
-  kLauncher           ///< `cordis run`
+  kLauncher,          ///< `cordis run`
+  kPlayer             ///< `cordis play`, which writes what a take has
 };
 
 /// All roles, in the order of the enumeration.

@@ -72,7 +72,8 @@ TEST_F(Keyring, HasAKeyForEachRoleAndAViewThatDoesNotCommand) {
   for (const KeyEntry& key : keys_in(ring_)) listed += key.name + "=" + key.role + " ";
 
   EXPECT_EQ(listed,
-            "controller=controller device=device launcher=launcher recorder=recorder sim=sim "
+            "controller=controller device=device launcher=launcher player=player recorder=recorder "
+            "sim=sim "
             "view=view ");
   EXPECT_EQ(identity_in(ring_, {Role::kViewThatCommands, Role::kView}, "view").role, Role::kView);
 }
@@ -105,7 +106,7 @@ TEST_F(Keyring, KeepsWhatIsPrivateFromOthers) {
               name.ends_with(".key.pem"))
         << name;
   }
-  EXPECT_EQ(private_files, 9);  // two authorities, six roles, commands
+  EXPECT_EQ(private_files, 10);  // two authorities, seven roles, commands
 }
 
 TEST_F(Keyring, IsNeverOverwritten) {
