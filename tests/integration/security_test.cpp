@@ -136,15 +136,23 @@ TEST_P(SecuredClock, RunsWithAllNodesAndIsRecorded) {
 INSTANTIATE_TEST_SUITE_P(Both, SecuredClock, ::testing::Values("realtime", "lockstep"),
                          [](const auto& clock) { return std::string(clock.param); });
 
-TEST(SecuredSession, FindsEachNodeAgainThatWasKilled) {
+TEST(SecuredSession, FindsEachNodeAgainThatWasKilledAndKeepsItsTake) {
   SecuredFolder session("realtime", own_domain());
-  ChildProcess& launcher =
-      session.start({program_path("cordis"), "run", session.launch_file(), "--no-color"});
+  const std::string take = (session.folder / "take.mcap").string();
+  const std::string saved = (session.folder / "saved.mcap").string();
+  ChildProcess& launcher = session.start(
+      {program_path("cordis"), "run", session.launch_file(), "--no-color", "--record", take});
   dds::Participant participant(session.member(own_domain(), "observer", Role::kController));
   StatusWatch status(participant);
   dds::Reader<msg::GestureForces> forces(participant, dds::Topic::kForces);
 
-  for (const char* name : {"sim", "keyboard", "view"}) {
+  EXPECT_TRUE(eventually([&] {
+    std::error_code absent;
+    const auto size = fs::file_size(take + ".part", absent);
+    return !absent && size > 100'000;
+  }));
+
+  for (const char* name : {"record", "sim", "keyboard", "view"}) {
     ASSERT_TRUE(status.wait_for_phase(name, msg::PHASE_RUNNING)) << name;
     const std::uint64_t epoch = status.of(name).epoch();
     kill(process_of(launcher, name), SIGKILL);
@@ -157,6 +165,43 @@ TEST(SecuredSession, FindsEachNodeAgainThatWasKilled) {
     })) << "the wall is felt again after the end of "
         << name;
   }
+  const Ended recovered = SecuredFolder::ended({"recover", take + ".part", "--output", saved});
+  EXPECT_TRUE(recovered.code == 0 || recovered.code == 3) << recovered.output;
+  const Ended info = SecuredFolder::ended({"info", saved});
+  EXPECT_EQ(info.code, 0) << info.output;
+  for (const char* topic : {"gesture/positions", "gesture/forces", "scene/frame"})
+    EXPECT_NE(info.output.find(topic), std::string::npos) << topic << "\n" << info.output;
+}
+
+TEST(SecuredSession, PlaysATakeForThoseWithKeysAlone) {
+  SecuredFolder session("lockstep", own_domain());
+  const std::string keys = (session.folder / "keys").string();
+  const std::string take = (session.folder / "take.mcap").string();
+  const std::string domain = std::to_string(own_domain());
+  const Ended recorded =
+      SecuredFolder::ended({"run", session.launch_file(), "--no-color", "--record", take, "--only",
+                            "sim,keyboard,record", "--duration", "1s"});
+  ASSERT_EQ(recorded.code, 0) << recorded.output;
+  ChildProcess& player = session.start({program_path("cordis"), "play", take, "--loop", "--session",
+                                        "secured", "--domain", domain, "--security", keys});
+  ASSERT_TRUE(player.wait_for_output(", secured", kPatience)) << player.output();
+
+  dds::Participant inside(session.member(own_domain(), "observer", Role::kView));
+  dds::Participant outside({own_domain(), "secured", "stranger"});
+  dds::Reader<msg::GestureForces> forces(inside, dds::Topic::kForces);
+  dds::Reader<msg::GestureForces> stolen(outside, dds::Topic::kForces);
+  msg::GestureForces force;
+  EXPECT_TRUE(eventually([&] { return forces.take(force); })) << player.output();
+  EXPECT_FALSE(stolen.take(force));
+  const Ended paused = SecuredFolder::ended({"ctl", "secured", "pause", "--timeout", "60s"});
+  EXPECT_EQ(paused.code, 0) << paused.output;
+  const Ended none = SecuredFolder::ended({"keys", "add", keys, "screen", "--role", "view", "-o",
+                                           (session.folder / "looking").string()});
+  ASSERT_EQ(none.code, 0) << none.output;
+  const Ended refused = SecuredFolder::ended(
+      {"play", take, "--session", "another", "--security", (session.folder / "looking").string()});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.output.find("which plays no take"), std::string::npos) << refused.output;
 }
 
 TEST(SecuredSession, TakesNoPartOfItselfWithoutKeys) {
@@ -292,6 +337,34 @@ TEST_F(SecuredHosts, LetAControllerWithAKeyCommandFromElsewhere) {
   const Ended refused = ctl(looking);
   EXPECT_EQ(refused.code, 1);
   EXPECT_NE(refused.output.find("which does not command"), std::string::npos) << refused.output;
+}
+
+TEST_F(SecuredHosts, SayToAPartWithoutKeysWhatItLacks) {
+  session_->add_file("open.yaml", filled(R"(cordis: 1
+session: secured
+domain: <domain>
+network: {peers: [192.168.5.1, 192.168.5.2]}
+nodes:
+  screen: {node: viz_node, port: 0}
+)",
+                                         {{"domain", std::to_string(kDomainOfHosts)}}));
+  const std::string open = (session_->folder / "open.yaml").string();
+  const std::string take = (session_->folder / "elsewhere.mcap").string();
+  const std::map<std::string, std::string> environment{
+      {"CORDIS_RUNTIME_DIR", (session_->folder / "host1").string()}};
+  using Words = std::vector<std::string>;
+
+  for (Words words : {Words{"viz_node", open}, Words{"cordis", "ctl", open, "pause"},
+                      Words{"cordis", "get", open, "wall"}, Words{"cordis", "echo", open},
+                      Words{"cordis", "record", open, "-o", take}, Words{"cordis", "list", open},
+                      Words{"cordis", "info", open}}) {
+    words[0] = program_path(words[0]);
+    ChildProcess part(hosts_->on(TwoHosts::kSecond, words), environment);
+    EXPECT_TRUE(part.wait_for_output("is secured, and this process has no keys", kPatience));
+    EXPECT_TRUE(part.wait_for_output("with --security FOLDER", kPatience)) << part.output();
+    part.signal(SIGINT);
+    part.wait(kPatience);
+  }
 }
 
 #ifdef CORDIS_CYCLONE_READER

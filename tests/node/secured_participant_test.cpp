@@ -19,6 +19,7 @@
 
 #include "idl/control.h"
 #include "idl/gesture.h"
+#include "idl/scene.h"
 #include "idl/topics.h"
 #include "node/dds/arrival.h"
 #include "node/dds/participant_ports.h"
@@ -154,6 +155,8 @@ TEST_F(SecuredParticipant, GivesEachRoleItsTopicsAlone) {
       refuses_to_write(Role::kViewThatCommands, msg::PointerTarget(), Topic::kPointerTarget));
   EXPECT_FALSE(refuses_to_write(Role::kController, msg::ControlCommand(), Topic::kCommand));
   EXPECT_FALSE(refuses_to_write(Role::kDevice, msg::GestureForces(), Topic::kForces));
+  EXPECT_FALSE(refuses_to_write(Role::kPlayer, msg::GestureForces(), Topic::kForces));
+  EXPECT_FALSE(refuses_to_write(Role::kPlayer, msg::SceneFrame(), Topic::kFrame));
 }
 
 TEST_F(SecuredParticipant, KeepsAKeyToTheSessionsThatItIsFor) {
@@ -339,6 +342,44 @@ TEST_F(SecuredParticipant, BelievesNoAnnouncementInTheNameOfOneThatHasProvenWhoI
   ASSERT_TRUE(pair.one_comes());
   EXPECT_FALSE(has_mismatch(pair));
   EXPECT_TRUE(pair.one_comes());
+}
+
+TEST_F(SecuredParticipant, SaysToOneWithoutKeysThatTheOthersHaveThem) {
+  Pair pair(member("sim", Role::kSim), member("hand", Role::kDevice));
+  ASSERT_TRUE(pair.one_comes());
+  const Participant stranger(plain("view"));
+  ParticipantConfig of_neighbour = plain("view");
+  of_neighbour.session = "another";
+  const Participant neighbour(of_neighbour);
+  of_neighbour.every_partition = true;
+  const Participant reader_of_all(of_neighbour);
+
+  for (const Participant* participant : {&stranger, &reader_of_all}) {
+    EXPECT_TRUE(eventually([&] {
+      return participant->mismatch().find("is secured, and this process has no keys") !=
+             std::string::npos;
+    })) << participant->mismatch();
+  }
+  EXPECT_EQ(neighbour.mismatch(), "");
+  EXPECT_EQ(pair.device.mismatch(), "");
+}
+
+TEST_F(SecuredParticipant, SaysWhyItsSessionIsEmptyUntilItIsNot) {
+  const auto has_said = [](const Participant& participant, const char* what) {
+    return eventually([&] { return participant.mismatch().find(what) != std::string::npos; });
+  };
+  const Participant sim(member("sim", Role::kSim));
+  {
+    const Participant without(plain("view"));
+    EXPECT_TRUE(has_said(sim, "'secured/view' has no keys")) << sim.mismatch();
+  }
+  EXPECT_TRUE(eventually([&] { return sim.mismatch().empty(); })) << "it has left";
+  const Participant of_others(member("view", Role::kView, "others"));
+  EXPECT_TRUE(has_said(sim, "'secured/view' and this process")) << sim.mismatch();
+  EXPECT_TRUE(has_said(of_others, "'secured/sim' and this process")) << of_others.mismatch();
+
+  const Participant device(member("hand", Role::kDevice));
+  EXPECT_TRUE(eventually([&] { return sim.mismatch().empty(); })) << sim.mismatch();
 }
 
 TEST_F(SecuredParticipant, FindsOneAgainThatLeftAndCameBack) {

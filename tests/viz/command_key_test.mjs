@@ -1,13 +1,17 @@
 // tests/viz/command_key_test.mjs -- the page commands a session that has a key, and shows the
-// refusals of one that has another. Real launcher, sim_node and viz_node, and a client that draws
+// refusals of one that has another. The page of a secured session shows it, and commands it where
+// its key lets it. Real launcher, sim_node and viz_node, and a client that draws
 // nothing.
 import assert from 'node:assert/strict';
 import { randomBytes } from 'node:crypto';
 import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { need, program, runCases, Session, until } from './session.mjs';
+import { need, program, runCases, Session, source, until } from './session.mjs';
 
 const WebSocket = need('ws');
+
+const FRAME = 1; // type of a binary message
+const SHIPPED = join(source, 'launch_configs/plucked_string.yaml');
 
 const SCENE = `cordis: 1
 name: free
@@ -20,12 +24,19 @@ matter:
 /** A page that receives texts and sends commands. */
 class Page {
   status = null;
+  hello = null;
+  frames = 0;
 
   constructor(url) {
     this.socket = new WebSocket(`${url.replace('http', 'ws')}/live`);
     this.socket.on('message', (data, isBinary) => {
+      if (isBinary && data[5] === FRAME) {
+        ++this.frames;
+        this.socket.send(JSON.stringify({ type: 'ack', sequence: data.readUInt32LE(8), drawn: true }));
+      }
       const text = isBinary ? null : JSON.parse(data.toString());
       if (text?.type === 'status') this.status = text;
+      if (text?.type === 'hello') this.hello = text;
     });
     this.socket.on('error', () => {});
   }
@@ -83,6 +94,29 @@ const cases = {
     page.socket.terminate();
     assert.equal(await view.end(), 0);
     assert.equal(await first.end('SIGINT'), 0);
+  },
+
+  'the page of a secured session shows a shipped scene, and commands it if its key grants that': async (session) => {
+    for (const [folder, ...granted] of [['keys_that_grant', '--view-commands'], ['keys']]) {
+      const ring = join(session.folder, folder);
+      assert.equal(await session.start('keys', program('cordis'), ['keys', 'new', ring, ...granted]).ended, 0);
+      const words = ['run', SHIPPED, '--no-color', `domain=${session.domain}`, 'session=secured', 'view.port=0', `security=${ring}`];
+      const launcher = session.start('cordis', program('cordis'), words);
+      await launcher.says(/in DDS domain \d+, secured/);
+      const page = await pageOf(launcher);
+      await until('the page has frames', () => page.frames > 3);
+      page.command('pause');
+      if (granted.length > 0) {
+        await until('it is paused', () => page.phase() === 'paused');
+      } else {
+        const shown = page.frames;
+        await until('the scene runs on', () => page.frames > shown + 50);
+        assert.equal(page.phase(), 'running');
+        assert.equal(page.hello.may_command, false);
+      }
+      page.socket.terminate();
+      assert.equal(await launcher.end('SIGINT'), 0);
+    }
   },
 };
 
