@@ -125,6 +125,51 @@ TEST(ImplicitEuler, IsOfFirstOrder) {
   EXPECT_NEAR(std::log2((coarse - middle).norm() / (middle - fine).norm()), 1.0, 0.2);
 }
 
+/// A mass that circles a fixed point by this angle in a step, on a spring with a damper.
+NetworkDescription circling(double stiffness, double viscosity, double angle, bool with_states) {
+  constexpr double kStep = 0.01;
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = kStep;
+  scene.mats = {fixed(Vec3::Zero()),
+                mass(1.0, Vec3(0.1, 0, 0), Vec3(0, 0.1 * angle / kStep, 0))};
+  const double whole = stiffness / (kStep * kStep);
+  if (!with_states) {
+    scene.links = {{0, 1, whole, viscosity / kStep, 0.1}};
+  } else {
+    scene.state_machines.emplace_back();
+    scene.state_machines[0].states.emplace_back();
+    scene.state_machines[0].states[0].stiffness = whole;
+    scene.state_machines[0].states[0].viscosity = viscosity / kStep;
+    scene.state_links = {{0, 1, 0, 0.1}};
+  }
+  return by_implicit(scene);
+}
+
+/// A damper that turns takes nothing while its length stays.
+TEST(ImplicitEuler, EntersNoLossThatADamperOnlySeemsToHaveWhileItTurns) {
+  for (const bool with_states : {false, true}) {
+    for (const double stiffness : {0.1, 0.7, 30.0}) {
+      for (const double viscosity : {0.1, 0.7, 50.0}) {
+        if (with_states && stiffness + 2.0 * viscosity > 3.0) continue;  // it would diverge
+        for (const double angle : {0.05, 0.2}) {
+          SCOPED_TRACE(testing::Message() << "K' " << stiffness << " Z' " << viscosity << " angle "
+                                          << angle << " states " << with_states);
+          World world = make_world(circling(stiffness, viscosity, angle, with_states));
+          double most = 0.0;
+          for (int n = 0; n < 5000; ++n) {
+            world.step();
+            most = std::max(most, world.energy().integration_error() / world.energy().largest);
+          }
+          // the first step leaves the circle, and stretches the spring by angle^2 / 2 of its length
+          const double stretched = stiffness * angle * angle / 4.0;
+          EXPECT_LT(most, 1.1 * stretched + 4.0 * angle * angle);
+        }
+      }
+    }
+  }
+}
+
 TEST(ImplicitEuler, KeepsMomentumUnderInnerForces) {
   NetworkDescription scene = free_cluster(50, 203, 3.0);
   for (Link& link : scene.links) link.stiffness *= 1e4;

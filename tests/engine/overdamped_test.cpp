@@ -482,8 +482,8 @@ TEST(OverdampedAccount, OfImplicitDecayWarnsOfNothing) {
       shape.integrator = IntegratorKind::kImplicit;
       for (const NetworkDescription& start : starts_of(shape, 0.0005)) {
         const AccountErrors errors = account_errors_of(start);
-        EXPECT_LT(errors.integration, 0.015) << viscosity;
-        EXPECT_LT(errors.dissipated, 0.015) << viscosity;
+        EXPECT_LT(errors.integration, 1e-3) << viscosity;
+        EXPECT_LT(errors.dissipated, 6e-3) << viscosity;
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/plan/stability/liaison_graph.h"
 #include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 
@@ -40,6 +41,25 @@ TEST(Slope, OfALawOfTheDistanceIsNotCertainWhereTheEndsPassEachOther) {
   EXPECT_EQ(largest_slope(ball, 0.5, 3, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
   ball.states[0].elasticity = engine::Rings{{{.stiffness = 2.0, .radius = 0.3}}};
   EXPECT_NE(largest_slope(ball, 0.5, 1, Reach{0.0, 0.0, 2.0}).uncertainty, nullptr);
+}
+
+/// What pushes at a positive distance pulls at a negative one: `pulls: false` cuts the wall off from behind.
+TEST(Slope, OfALinkThatComesFromBehindIsNotCertain) {
+  for (const bool pulls : {true, false}) {
+    for (const double distance : {-0.6, 0.6}) {
+      for (const int dimension : {1, 2}) {
+        NetworkDescription scene = oscillator(0.01, 0.0, 0.0, distance, 0.0, 1e-5);
+        scene.dimension = dimension;
+        scene.links.clear();
+        scene.state_machines = {state_machine(3.0, lennard_jones(0.01, 0.5))};
+        scene.state_machines[0].states[0].pulls = pulls;
+        scene.state_links = {{0, 1, 0, 0.5}};
+        const auto uncertainty = plan::liaison_graph(scene).uncertainty;
+        const bool from_behind = dimension == 1 && !pulls && distance < 0.0;
+        EXPECT_EQ(uncertainty.has_value(), from_behind) << pulls << distance << dimension;
+      }
+    }
+  }
 }
 
 TEST(Slope, OfATableIsThatOfItsSteepestPiece) {

@@ -15,6 +15,10 @@ void FullStepIntegrator::find_forces(WorldState& world, const double* extrapolat
                                      StepEnergy& energy) noexcept {
   const double half = world.add_forces_at_full_step(extrapolated, energy);
   take_half(half + correct_forces(world), energy);
+  find_outer_forces(world, energy);
+}
+
+void FullStepIntegrator::find_outer_forces(WorldState& world, StepEnergy& energy) noexcept {
   // The moment of the first forces is the start: nothing has been driven or pushed on a way to it.
   energy.port_work += world.outside.work_at_ports(world.mats, /*at_start=*/!started_);
   const double before = world.outside.kick(world.mats);

@@ -23,6 +23,8 @@ class FullStepIntegrator : public Integrator {
   /// The forces of all liaisons, where dampers see (position - extrapolated) / dt, and those from
   /// outside.
   void find_forces(WorldState& world, const double* extrapolated, StepEnergy& energy) noexcept;
+  /// The forces from outside, and the works of ports.
+  void find_outer_forces(WorldState& world, StepEnergy& energy) noexcept;
   /// Puts other forces in the place of some of them. @return half of what that changes in what
   /// viscosity takes in a period [J]
   virtual double correct_forces(WorldState&) noexcept { return 0.0; }

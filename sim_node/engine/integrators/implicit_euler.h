@@ -21,8 +21,9 @@ namespace cordis::engine {
 /// step is solved.
 ///
 /// The account belongs to the moment of the last forces, with the velocity that led there; the
-/// residual is what the scheme has taken. What linear dampers take in a period is the mean of dt v Z v at both
-/// ends. In the first eight, in which velocities of the start die away, it is (v + v+) dt Z v+ / 2, and besides
+/// residual is what the scheme has taken. What linear dampers take in a period is (v + v+) dt Z v+ / 2, by the
+/// directions at its beginning, by which the scheme resists: so a damper that turns takes nothing. In the first
+/// eight, in which velocities of the start die away and creeps begin, it is more by
 ///
 ///     (v+ - v) dt^2 Z (M + dt Z + dt^2 K)^-1 f / 2,     f = M (v+ - v) / dt + Z v+
 ///
@@ -37,12 +38,11 @@ class ImplicitEuler final : public FullStepIntegrator {
   Energy energy(WorldState& world) const noexcept override;
 
  private:
-  double correction_at_start(const WorldState& world) noexcept;
+  double loss_of_creep(const WorldState& world) noexcept;
 
   StiffnessMatrix matrix_;
   AlignedVector<double> change_;   // of the displacement of a period, then what it is solved for
   AlignedVector<double> carried_;  // of the first steps
-  AlignedVector<double> drag_;     // of the first steps
   AlignedVector<double>& before_ = memory_;  // dt v that led to the moment of the last forces [m]
 };
 

@@ -13,6 +13,20 @@ namespace {
 
 constexpr std::uint32_t kNoPlace = std::numeric_limits<std::uint32_t>::max();
 
+/// The square of the part of a vector along a direction of any length; 0 along none.
+double square_along(const Vec3& direction, const Vec3& vector) {
+  const double square = dot(direction, direction);
+  const double product = dot(direction, vector);
+  return square > 0.0 ? product * product / square : 0.0;
+}
+
+/// What the ends of a link differ by in 4 x N columns.
+template <class EndsOfLink>
+Vec3 apart(const double* columns, const EndsOfLink& link) {
+  return Vec3::Map(columns + 4 * std::size_t{link.mat_b}) -
+         Vec3::Map(columns + 4 * std::size_t{link.mat_a});
+}
+
 }  // namespace
 
 StiffnessMatrix::StiffnessMatrix(const NetworkDescription& network)
@@ -184,11 +198,10 @@ void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const doubl
                                                double* change) const noexcept {
   for (const MatrixLink& link : links_) {
     const Tangent part = tangent(mats, link);
-    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{link.mat_b}) -
-                       Vec3::Map(displacement + 4 * std::size_t{link.mat_a});
+    const Vec3 moved = apart(displacement, link);
     const Vec3& n = part.direction;
-    const double along = n.x() * apart.x() + n.y() * apart.y() + n.z() * apart.z();
-    const Vec3 force = part.across * apart + ((part.along - part.across) * along) * n;
+    const double along = n.x() * moved.x() + n.y() * moved.y() + n.z() * moved.z();
+    const Vec3 force = part.across * moved + ((part.along - part.across) * along) * n;
     Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_a}) += force;
     Eigen::Map<Vec3>(change + 4 * std::size_t{link.mat_b}) -= force;
   }
@@ -197,10 +210,9 @@ void StiffnessMatrix::subtract_stiffness_times(const MatArray& mats, const doubl
 void StiffnessMatrix::add_viscosity_times(const MatArray& mats, const double* displacement,
                                           double* force) const noexcept {
   for (const MatrixLink& link : links_) {
-    const Vec3 apart = Vec3::Map(displacement + 4 * std::size_t{link.mat_b}) -
-                       Vec3::Map(displacement + 4 * std::size_t{link.mat_a});
+    const Vec3 moved = apart(displacement, link);
     const Vec3 n = tangent(mats, link).direction;
-    const Vec3 resisted = link.isotropic && dimension_ > 1 ? apart : Vec3(dot(n, apart) * n);
+    const Vec3 resisted = link.isotropic && dimension_ > 1 ? moved : Vec3(dot(n, moved) * n);
     Eigen::Map<Vec3>(force + 4 * std::size_t{link.mat_a}) -= link.viscosity * resisted;
     Eigen::Map<Vec3>(force + 4 * std::size_t{link.mat_b}) += link.viscosity * resisted;
   }
@@ -208,6 +220,42 @@ void StiffnessMatrix::add_viscosity_times(const MatArray& mats, const double* di
     Eigen::Map<Vec3>(force + 4 * std::size_t{mat_[k]}) +=
         medium_[k] * Vec3::Map(displacement + 4 * std::size_t{mat_[k]});
   }
+}
+
+double StiffnessMatrix::viscous_product(const MatArray& mats, const double* first,
+                                        const double* second) const noexcept {
+  double sum = 0.0;
+  for (const MatrixLink& link : links_) {
+    if (link.viscosity == 0.0) continue;
+    const Vec3 one = apart(first, link);
+    const Vec3 other = apart(second, link);
+    if (link.isotropic || dimension_ == 1) {
+      sum += link.viscosity * dot(one, other);
+      continue;
+    }
+    const Vec3 way = mats.position(link.mat_b) - mats.position(link.mat_a);
+    const double square = dot(way, way);
+    if (square > 0.0) sum += link.viscosity * dot(way, one) * dot(way, other) / square;
+  }
+  for (std::size_t k = 0; k < mat_.size(); ++k) {
+    const std::size_t mat = 4 * std::size_t{mat_[k]};
+    sum += medium_[k] * dot(Vec3::Map(first + mat), Vec3::Map(second + mat));
+  }
+  return sum;
+}
+
+double StiffnessMatrix::turned_product(const MatArray& mats,
+                                       const double* displacement) const noexcept {
+  if (dimension_ == 1) return 0.0;
+  double sum = 0.0;
+  for (const MatrixLink& link : links_) {
+    if (link.isotropic || link.viscosity == 0.0) continue;
+    const Vec3 moved = apart(displacement, link);
+    sum += link.viscosity *
+           (square_along(mats.delayed(link.mat_b) - mats.delayed(link.mat_a), moved) -
+            square_along(mats.position(link.mat_b) - mats.position(link.mat_a), moved));
+  }
+  return sum;
 }
 
 /// The numeric phase of Davis's LDL, row by row of L. A pivot that is not finite spoils the rows that

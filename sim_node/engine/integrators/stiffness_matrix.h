@@ -26,6 +26,12 @@ class StiffnessMatrix {
   /// Adds dt Z (displacement) over the links and the medium to `force` [kg m].
   void add_viscosity_times(const MatArray& mats, const double* displacement,
                            double* force) const noexcept;
+  /// first . dt Z (second) over the links and the medium [kg m^2]. Each 4 x N columns [m].
+  double viscous_product(const MatArray& mats, const double* first,
+                         const double* second) const noexcept;
+  /// displacement . dt Z (displacement) by the directions of the links one period ago, less that by
+  /// the present ones [kg m^2]. 0 in 1 dimension.
+  double turned_product(const MatArray& mats, const double* displacement) const noexcept;
   /// Solves for 4 x N columns in place; what is no mass becomes 0.
   void solve(double* columns) noexcept;
 

@@ -182,13 +182,32 @@ void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
   const ForceColumns columns = mats.force_columns();
   energy += links.add_forces(kernel, columns, *team);
   energy += vector_springs.add_forces(kernel, columns, *team);
-  if (!state_links.empty()) {
-    energy += state_links.add_forces(state_machines, table, columns, step_count, log);
-  }
-  energy += add_maxwell_forces(columns);
-  energy += bends.add_forces(columns);
-  energy += add_set_forces(columns);
+  energy += add_explicit_forces(columns);
   if (freezing) freezing->restore_forces(mats);
+}
+
+StepEnergy WorldState::add_explicit_forces(const ForceColumns& columns) noexcept {
+  StepEnergy work;
+  if (!state_links.empty()) {
+    work += state_links.add_forces(state_machines, table, columns, step_count, log);
+  }
+  work += add_maxwell_forces(columns);
+  work += bends.add_forces(columns);
+  work += add_set_forces(columns);
+  return work;
+}
+
+double WorldState::add_forces_to_solve_on(StepEnergy& energy) noexcept {
+  CORDIS_ASSERT(!freezing);
+  const ForceColumns columns = mats.force_columns();
+  mats.clear_forces(*team);
+  StepEnergy of_solved = links.add_forces_at_full_step(kernel, columns, *team);
+  of_solved += vector_springs.add_forces_at_full_step(kernel, columns, *team);
+  if (step_count == 0) maxwell_links.go_back(mats);
+  const StepEnergy of_others = add_explicit_forces(columns);
+  energy.switching += of_others.switching;
+  if (step_count > 0) energy.dissipated += of_others.dissipated;
+  return 0.5 * of_solved.dissipated;
 }
 
 double WorldState::add_forces_at_full_step(const double* extrapolated_positions,

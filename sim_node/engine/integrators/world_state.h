@@ -84,6 +84,12 @@ struct WorldState {
   /// @return half of what viscosity takes in a period at this moment [J]
   [[nodiscard]] double add_forces_at_full_step(const double* extrapolated,
                                                StepEnergy& energy) noexcept;
+  /// Adds the forces of all that no matrix solves, as `cordis` does. @return works since the last call [J]
+  StepEnergy add_explicit_forces(const ForceColumns& columns) noexcept;
+  /// Clears the forces and adds those of all liaisons, where a matrix solves the linear ones on from here.
+  /// Enters the works of the others since the last call, as `cordis` does. Precondition: it does not freeze.
+  /// @return half of what linear links take in a period at this moment [J]
+  [[nodiscard]] double add_forces_to_solve_on(StepEnergy& energy) noexcept;
   /// The account at the moment of the last forces. @param velocity_of  of a MAT at that moment
   template <class VelocityOf>
   Energy energy_at_full_step(VelocityOf velocity_of) noexcept {

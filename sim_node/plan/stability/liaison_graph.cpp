@@ -376,9 +376,12 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
   SlopesOfLinks slopes(network, reach);
   for (const engine::StateLink& link : network.state_links) {
     Slope slope = slopes.slope_of(link);
-    slope.stiffness = std::max(slope.stiffness,
-                               stiffness_across_at(network.state_machines[link.state_machine],
-                                                   network.dimension, start_point(network, link)));
+    const engine::StateMachine& machine = network.state_machines[link.state_machine];
+    const engine::LawPoint start = start_point(network, link);
+    slope.stiffness =
+        std::max(slope.stiffness, stiffness_across_at(machine, network.dimension, start));
+    if (network.dimension == 1 && slope.uncertainty == nullptr)
+      slope.uncertainty = jumps_from_behind(machine, start);
     note(slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,

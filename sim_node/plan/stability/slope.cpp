@@ -246,6 +246,13 @@ bool acts_at(const engine::LinkState& state, double tension) {
 
 }  // namespace
 
+const char* jumps_from_behind(const engine::StateMachine& state_machine,
+                              const engine::LawPoint& point) {
+  const engine::LinkState& state = state_machine.states[state_machine.start];
+  const bool is_balls = std::holds_alternative<engine::LennardJones>(state.elasticity);
+  return is_balls && !state.pulls && point.distance < 0.0 ? kPassesThrough : nullptr;
+}
+
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {
   engine::StateMachine alone;
   alone.states = {state_machine.states[state_machine.start]};

@@ -37,6 +37,12 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 
+/// Why the force of a link of 1 dimension that begins at a point jumps where its ends pass each other; null: it
+/// does not. What pushes at positive distances pulls at negative ones, and `pulls: false` cuts it there: so from
+/// behind nothing stops the ends.
+const char* jumps_from_behind(const engine::StateMachine& state_machine,
+                              const engine::LawPoint& point);
+
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
 
