@@ -131,8 +131,7 @@ NetworkDescription circling(double stiffness, double viscosity, double angle, bo
   NetworkDescription scene;
   scene.dimension = 2;
   scene.step = kStep;
-  scene.mats = {fixed(Vec3::Zero()),
-                mass(1.0, Vec3(0.1, 0, 0), Vec3(0, 0.1 * angle / kStep, 0))};
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.1, 0, 0), Vec3(0, 0.1 * angle / kStep, 0))};
   const double whole = stiffness / (kStep * kStep);
   if (!with_states) {
     scene.links = {{0, 1, whole, viscosity / kStep, 0.1}};
