@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <vector>
 
@@ -107,6 +108,8 @@ class Evaluation {
     }
     return stack.front().jumps ? Enclosed{stack.front().value, {kAny, kAny}} : stack.front();
   }
+  /// True if it was not decided in the box which of two values is taken.
+  bool is_undecided() const { return is_undecided_; }
 
  private:
   bool box_is_finite() const {
@@ -150,17 +153,18 @@ class Evaluation {
 
   /// One of two in a box in which it is not decided which: as steep as either where they meet, for
   /// what is no more apart than its slopes make it.
-  Enclosed either(const Enclosed& u, const Enclosed& v) const {
+  Enclosed either(const Enclosed& u, const Enclosed& v) {
     Enclosed both{hull(u.value, v.value)};
     const double apart = size_of(u.value - v.value);
     const bool meet = apart <= change_of(u) + change_of(v);
+    is_undecided_ = true;
     for (std::size_t i = 0; i < kVariables; ++i) {
       both.slope[i] = meet ? hull(u.slope[i], v.slope[i]) : kAny;
     }
     return both;
   }
 
-  Enclosed multiply(const Enclosed& u, const Enclosed& v) const {
+  Enclosed multiply(const Enclosed& u, const Enclosed& v) {
     if (u.jumps && v.jumps) return {u.value * v.value, {}, true};
     if (v.jumps) return multiply(v, u);
     if (u.jumps) {
@@ -252,7 +256,7 @@ class Evaluation {
     }
   }
 
-  Enclosed apply(const Instruction& instruction, const Enclosed* operands) const {
+  Enclosed apply(const Instruction& instruction, const Enclosed* operands) {
     const std::size_t count = engine::operand_count(instruction.operation);
     if (instruction.operation == Operation::kConstant) {
       return {{instruction.constant, instruction.constant}};
@@ -268,7 +272,7 @@ class Evaluation {
     return two(instruction.operation, operands[0], operands[1]);
   }
 
-  Enclosed two(Operation operation, const Enclosed& u, const Enclosed& v) const {
+  Enclosed two(Operation operation, const Enclosed& u, const Enclosed& v) {
     const Interval& x = u.value;
     const Interval& y = v.value;
     const bool x_holds = !holds_zero(x);
@@ -330,6 +334,7 @@ class Evaluation {
   }
 
   const LinkBox& box_;
+  bool is_undecided_ = false;
 };
 
 /// The largest of one slope over the box, or of what is read off it.
@@ -377,6 +382,30 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
 
 constexpr double kNearEnough = 0.02;
 
+/// Halves of a box along one variable, in which it is not decided which of two values is taken.
+class UndecidedHalves {
+ public:
+  UndecidedHalves(const engine::Program& program, const LinkBox& box, Interval LinkBox::*variable) {
+    const Interval& whole = box.*variable;
+    const double middle = 0.5 * (whole.low + whole.high);
+    for (const Interval& half : {Interval{whole.low, middle}, Interval{middle, whole.high}}) {
+      LinkBox part = box;
+      part.*variable = half;
+      Evaluation evaluation(part);
+      evaluation.enclose(program);
+      if (evaluation.is_undecided()) boxes_[count_++] = part;
+    }
+  }
+  std::size_t count() const { return count_; }
+  void add_to(std::vector<LinkBox>& boxes) const {
+    boxes.insert(boxes.end(), boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count_));
+  }
+
+ private:
+  std::array<LinkBox, 2> boxes_;
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
@@ -387,6 +416,37 @@ SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& bo
   };
   return {steepest(program, box, 0, rise, enough, box.bisections),
           steepest(program, box, 1, rise, enough, box.bisections)};
+}
+
+bool has_step(const engine::Program& program, const LinkBox& box) {
+  CORDIS_ASSERT(box.bisections > 0);
+  constexpr double kSmallest = 1e-9;  // of the box
+  const auto is_wide = [&box](const LinkBox& part, Interval LinkBox::*variable) {
+    const auto extent = [variable](const LinkBox& any) {
+      return (any.*variable).high - (any.*variable).low;
+    };
+    return extent(part) > kSmallest * extent(box) && std::isfinite(extent(part));
+  };
+  std::vector<LinkBox> boxes{box};
+  for (int n = 0; n < box.bisections && !boxes.empty(); ++n) {
+    const LinkBox part = boxes.back();
+    boxes.pop_back();
+    std::optional<UndecidedHalves> best;
+    for (const auto variable : {&LinkBox::distance, &LinkBox::speed}) {
+      if (!is_wide(part, variable)) continue;
+      const UndecidedHalves halves(program, part, variable);
+      if (!best || halves.count() < best->count()) best = halves;
+    }
+    if (best) {
+      best->add_to(boxes);
+      continue;
+    }
+    Evaluation evaluation(part);
+    const Enclosed here = evaluation.enclose(program);
+    const bool is_steep = std::isinf(size_of(here.slope[0])) || std::isinf(size_of(here.slope[1]));
+    if (evaluation.is_undecided() && is_steep) return true;
+  }
+  return false;
 }
 
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest) {

@@ -40,6 +40,11 @@ struct SteepestSlopes {
 /// where the bisections of the box are enough. Precondition: well-formed, of quantities known to laws.
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
+/// True if the program surely jumps in the box, or has no tangent there: where a condition changes, its two values are
+/// apart. Boxes are bisected down to 1e-9 of the whole. A step of less than 1e-8 of what the slopes make of the box is
+/// not seen, nor one that the bisections do not come to.
+bool has_step(const engine::Program& program, const LinkBox& box);
+
 /// No tangent of the program over the distance in a box is below this, found likewise with a tenth
 /// of the bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest);

@@ -102,6 +102,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const Interval within = box.distance;
   const SteepestSlopes near = steepest_slopes(program, box);
+  const bool jumps = has_step(program, box);
   const auto is_same = [&near](const SteepestSlopes& far) {
     return far.over_distance <= kSame * near.over_distance &&
            far.over_speed <= kSame * near.over_speed;
@@ -113,6 +114,11 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
     slope.bounded = false;
     slope.uncertainty = kNoLargestSlope;
+    return;
+  }
+  if (jumps) {
+    slope.bounded = false;
+    slope.uncertainty = kJumps;
     return;
   }
   slope.stiffness += near.over_distance;

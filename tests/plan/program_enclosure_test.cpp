@@ -1,0 +1,185 @@
+// tests/plan/program_enclosure_test.cpp -- values, slopes and steps of expressions.
+#include "sim_node/plan/stability/program_enclosure.h"
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/programs.h"
+#include "tests/support/rounds.h"
+#include "tests/support/test_seed.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::LinkBox;
+
+class RandomPrograms {
+ public:
+  explicit RandomPrograms(std::uint32_t seed) : random_(seed) {}
+
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_()) % count; }
+  bool coin() { return below(2) == 0; }
+
+  /// An expression of distance and speed. @param steps  it may choose between two values
+  Term term(int depth, bool steps) {
+    if (depth == 0 || below(6) == 0) return leaf();
+    const auto next = [&] { return term(depth - 1, steps); };
+    switch (below(steps ? 12U : 10U)) {
+      case 0:
+        return next() + next();
+      case 1:
+        return next() - next();
+      case 2:
+      case 3:
+        return next() * next();
+      case 4:
+        return two(Operation::kMin, next(), next());
+      case 5:
+        return two(Operation::kMax, next(), next());
+      case 6:
+        return one(Operation::kSin, next());
+      case 7:
+        return one(Operation::kTanh, next());
+      case 8:
+        return size(next());
+      case 9:
+        return one(Operation::kSqrt, 0.3 + size(next()));
+      case 10:
+        return three(Operation::kSelect, next() > next(), next(), next());
+      default:
+        return (next() < next()) * next();
+    }
+  }
+  LinkBox box() {
+    const double distance = between(-1.0, 1.0);
+    const double speed = between(-2.0, 2.0);
+    return {{distance, distance + between(0.01, 1.5)},
+            {speed, speed + between(0.01, 3.0)},
+            between(-0.5, 0.5),
+            {},
+            {}};
+  }
+  double value(const Program& program, const LinkBox& box, double distance, double speed) {
+    engine::LinkQuantities now{};
+    now[static_cast<std::size_t>(Quantity::kDistance)] = distance;
+    now[static_cast<std::size_t>(Quantity::kElongation)] = distance - box.rest_length;
+    now[static_cast<std::size_t>(Quantity::kSpeed)] = speed;
+    return engine::value_of(program, now);
+  }
+  double in(const plan::Interval& interval) { return between(interval.low, interval.high); }
+
+ private:
+  Term leaf() {
+    switch (below(4)) {
+      case 0:
+        return q(Quantity::kDistance);
+      case 1:
+        return q(Quantity::kElongation);
+      case 2:
+        return q(Quantity::kSpeed);
+      default:
+        return Term(between(-3.0, 3.0));
+    }
+  }
+
+  std::mt19937 random_;
+};
+
+bool lies_in(double value, const plan::Interval& interval) {
+  const double spare = 1e-9 * (1.0 + std::abs(value));
+  return value >= interval.low - spare && value <= interval.high + spare;
+}
+
+TEST(ProgramEnclosure, HoldsEveryValueAndTheSlopeBetweenAnyTwoPlaces) {
+  RandomPrograms chance(test_seed());
+  int finite = 0;
+  const int count = rounds(3000);
+  for (int n = 0; n < count; ++n) {
+    const bool steps = chance.coin();
+    const Program program = chance.term(4, steps).program;
+    const LinkBox box = chance.box();
+    const plan::ProgramEnclosure all = plan::enclosure_of(program, box);
+    finite += std::isfinite(all.over_distance.high - all.over_distance.low) ? 1 : 0;
+    for (int sample = 0; sample < 20; ++sample) {
+      const double d = chance.in(box.distance);
+      const double v = chance.in(box.speed);
+      const double here = chance.value(program, box, d, v);
+      ASSERT_TRUE(lies_in(here, all.value))
+          << n << " " << here << " " << all.value.low << " " << all.value.high;
+      if (steps) continue;  // between two places there may be a step
+      const double far = chance.in(box.distance);
+      const double fast = chance.in(box.speed);
+      if (std::abs(far - d) < 1e-3 || std::abs(fast - v) < 1e-3) continue;
+      ASSERT_TRUE(
+          lies_in((chance.value(program, box, far, v) - here) / (far - d), all.over_distance))
+          << n;
+      ASSERT_TRUE(
+          lies_in((chance.value(program, box, d, fast) - here) / (fast - v), all.over_speed))
+          << n;
+    }
+  }
+  EXPECT_GT(finite, count / 2);
+}
+
+/// A condition that changes within the box, of the distance, of the speed or of both.
+Term changing_within(RandomPrograms& chance, const LinkBox& box) {
+  const auto inner = [&chance](const plan::Interval& all) {
+    const double width = all.high - all.low;
+    return chance.between(all.low + 0.05 * width, all.high - 0.05 * width);
+  };
+  const double d = inner(box.distance);
+  const double v = inner(box.speed);
+  switch (chance.below(3)) {
+    case 0:
+      return q(Quantity::kDistance) > d;
+    case 1:
+      return q(Quantity::kSpeed) < v;
+    default: {
+      const double part = chance.between(-0.5, 0.5);
+      return q(Quantity::kDistance) + part * q(Quantity::kSpeed) > d + part * v;
+    }
+  }
+}
+
+TEST(ProgramEnclosure, FindsStepsMuchSmallerThanWhatTheSlopesMakeOfTheBox) {
+  RandomPrograms chance(test_seed());
+  for (int n = 0; n < rounds(400); ++n) {
+    const LinkBox box = chance.box();
+    const double steep = std::pow(10.0, chance.between(-1.0, 4.0));
+    const double step = steep * std::pow(10.0, chance.between(-5.0, 1.0));
+    const Term smooth =
+        steep * (q(Quantity::kDistance) + one(Operation::kSin, q(Quantity::kSpeed)));
+    const Term when = changing_within(chance, box);
+    const Term chosen = chance.coin() ? three(Operation::kSelect, when, smooth + step, smooth)
+                                      : smooth + step * when;
+    EXPECT_TRUE(plan::has_step(chosen.program, box)) << n << " " << steep << " " << step;
+  }
+}
+
+TEST(ProgramEnclosure, FindsNoStepWhereTwoValuesMeet) {
+  RandomPrograms chance(test_seed());
+  for (int n = 0; n < rounds(400); ++n) {
+    const LinkBox box = chance.box();
+    const double steep = std::pow(10.0, chance.between(-1.0, 4.0));
+    const bool of_distance = chance.coin();
+    const plan::Interval& all = of_distance ? box.distance : box.speed;
+    const double place = chance.in(all);
+    const Term x = q(of_distance ? Quantity::kDistance : Quantity::kSpeed);
+    const Term beyond = steep * (x - place);
+    const Term bent = chance.between(0.1, 3.0) * beyond + beyond * beyond;
+    const Term chosen =
+        chance.coin() ? three(Operation::kSelect, x > place, beyond, bent) : (x > place) * beyond;
+    EXPECT_FALSE(plan::has_step(chosen.program, box)) << n;
+    const plan::SteepestSlopes most = plan::steepest_slopes(chosen.program, box);
+    EXPECT_TRUE(std::isfinite(most.over_distance) && std::isfinite(most.over_speed)) << n;
+  }
+}
+
+}  // namespace
+}  // namespace cordis::test
