@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/laws/table.h"
+#include "tests/engine/programs.h"
 #include "tests/support/test_seed.h"
 
 namespace cordis::plan {
@@ -69,6 +70,18 @@ TEST(LawEnergy, FallsByWhatATableGivesOnBothSidesAtEveryScale) {
     // It follows the way in 400 steps, so it misses where the tension changes its sign by as much.
     EXPECT_NEAR(fall_of(state, 0.0, span, {}), expected, 1e-4 * force * scale)
         << "round " << round << ", scale " << scale << " m";
+  }
+}
+
+/// A push that grows as a power of the elongation: faster than its cube root, it drives apart ever harder.
+TEST(LawEnergy, DrivesApartWhatPushesMoreThanTwiceAsMuchTenTimesAsFar) {
+  for (const double exponent : {0.2, 0.28, 0.34, 0.5, 1.0, 1.5}) {
+    const test::Term far = test::size(test::q(engine::Quantity::kElongation));
+    engine::LinkState state;
+    state.elasticity =
+        test::expression_law(-3.0 * test::two(engine::Operation::kPower, far, exponent));
+    const bool grows = std::pow(10.0, exponent) > 2.0;
+    EXPECT_EQ(drives_apart(state, 0.2, /*turns=*/true, Reach{0.2}), grows) << exponent;
   }
 }
 
