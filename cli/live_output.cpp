@@ -42,9 +42,13 @@ SilenceNote::SilenceNote(std::string verb, std::string session, std::string patt
       participant_(participant) {}
 
 void SilenceNote::update(std::uint64_t received) {
-  if (done_ || (received == 0 && std::chrono::steady_clock::now() < began_ + kLongSilence)) return;
-  done_ = true;
-  if (received == 0) node::print_text(stderr, "cordis " + verb_ + ": " + text() + "\n");
+  done_ = done_ || received > 0;
+  if (done_ || std::chrono::steady_clock::now() < began_ + kLongSilence) return;
+  const std::string reason = participant_.mismatch();
+  if (has_spoken_ && (reason.empty() || reason == reason_)) return;
+  has_spoken_ = true;
+  reason_ = reason;
+  node::print_text(stderr, "cordis " + verb_ + ": " + text() + "\n");
 }
 
 std::string SilenceNote::text() const {

@@ -13,7 +13,8 @@ namespace cordis::cli {
 /// @throws std::runtime_error when it cannot be written for another reason, as on a full disk
 bool flush_output();
 
-/// Says once, on stderr, that nothing has come so far on the topics that were asked for.
+/// Says on stderr that nothing has come so far on the topics that were asked for: once, and again when the reason
+/// becomes known.
 class SilenceNote {
  public:
   /// @param pattern  of topics; empty: all
@@ -32,7 +33,9 @@ class SilenceNote {
   const std::string pattern_;
   const dds::Participant& participant_;
   const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-  bool done_ = false;
+  std::string reason_;  // that it has given
+  bool has_spoken_ = false;
+  bool done_ = false;  // a message has come
 };
 
 }  // namespace cordis::cli

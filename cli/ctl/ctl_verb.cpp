@@ -44,8 +44,10 @@ std::runtime_error silence(const CtlWords& words, const SessionAddress& address,
   if (!addressed_is_there && !mismatch.empty())
     return std::runtime_error("no node answers in " + where + ": " + mismatch);
   if (present.empty())
-    return std::runtime_error("no node is in " + where + ": start it with `cordis run`" +
-                              (words.domain.empty() ? ", or name its --domain" : ""));
+    return std::runtime_error(
+        "no node is in " + where + ": start it with `cordis run`" +
+        (words.domain.empty() ? ", or name its --domain" : "") +
+        (address.keyring.empty() ? "" : "; or its keys are of another keyring"));
   if (!addressed_is_there)
     return std::runtime_error("no " + words.node + " is in " + where + ", only " + listed(present));
   return std::runtime_error("no reply from " + words.node + " in " + where + " within " +

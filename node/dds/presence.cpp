@@ -357,8 +357,7 @@ void Presence::look_at_those_elsewhere() {
 }
 
 /// Marks peers that have not proven who they are, if no process of the session has: they have other
-/// keys, or none.
-/// Anybody can announce such a peer, so beside trusted ones it changes nothing.
+/// keys, or none. Anybody can announce such a peer, so beside trusted ones it changes nothing.
 void Presence::look_at_unproven() {
   const std::lock_guard lock(mutex_);
   const bool has_company = std::ranges::any_of(peers_, [this](const auto& entry) {

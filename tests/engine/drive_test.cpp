@@ -115,6 +115,22 @@ TEST(Drive, ShakesAnOscillatorWithItsExactAmplitudeAndPhase) {
   }
 }
 
+/// What a driven end brings in by a damper is what the mass gains and the damper takes.
+TEST(Drive, DragsAMassThroughADamperWithoutAnIntegrationError) {
+  for (const auto integrator : {IntegratorKind::kLeapfrog, IntegratorKind::kImplicit}) {
+    for (const double viscosity : {0.02, 0.1, 0.5}) {  // Z'
+      NetworkDescription scene = oscillator(1e-3, 0.0, viscosity, 0.0, 0.0, 1e-3);
+      scene.integrator = integrator;
+      drive(scene, 0, along_x(Term(0.01) * sine(Term(6.0 * kPi) * now())));
+      World world = make_world(scene);
+      run(world, 970);
+      const engine::Energy energy = world.energy();
+      EXPECT_LT(std::abs(energy.integration_error()), 0.02 * energy.largest)
+          << to_string(integrator) << " Z' " << viscosity;
+    }
+  }
+}
+
 TEST(Drive, HasTheOrderOfItsIntegrator) {
   const auto fall = [](IntegratorKind integrator) {
     return error_of_base_excitation(integrator, 3.2, 500) /

@@ -162,7 +162,9 @@ TEST(ImplicitEuler, EntersNoLossThatADamperOnlySeemsToHaveWhileItTurns) {
           }
           // the first step leaves the circle, and stretches the spring by angle^2 / 2 of its length
           const double stretched = stiffness * angle * angle / 4.0;
-          EXPECT_LT(most, 1.1 * stretched + 4.0 * angle * angle);
+          // what is not solved sees the way of the last period
+          const double late = with_states ? 4.0 * angle * angle : 1e-4;
+          EXPECT_LT(most, 1.1 * stretched + late);
         }
       }
     }

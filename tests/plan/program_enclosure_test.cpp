@@ -158,7 +158,7 @@ TEST(ProgramEnclosure, FindsStepsMuchSmallerThanWhatTheSlopesMakeOfTheBox) {
     const Term when = changing_within(chance, box);
     const Term chosen = chance.coin() ? three(Operation::kSelect, when, smooth + step, smooth)
                                       : smooth + step * when;
-    EXPECT_TRUE(plan::has_step(chosen.program, box)) << n << " " << steep << " " << step;
+    EXPECT_TRUE(plan::has_step(chosen.program, box, box)) << n << " " << steep << " " << step;
   }
 }
 
@@ -175,10 +175,54 @@ TEST(ProgramEnclosure, FindsNoStepWhereTwoValuesMeet) {
     const Term bent = chance.between(0.1, 3.0) * beyond + beyond * beyond;
     const Term chosen =
         chance.coin() ? three(Operation::kSelect, x > place, beyond, bent) : (x > place) * beyond;
-    EXPECT_FALSE(plan::has_step(chosen.program, box)) << n;
+    EXPECT_FALSE(plan::has_step(chosen.program, box, box)) << n;
     const plan::SteepestSlopes most = plan::steepest_slopes(chosen.program, box);
     EXPECT_TRUE(std::isfinite(most.over_distance) && std::isfinite(most.over_speed)) << n;
   }
+}
+
+/// Pieces that meet, chosen by windows of the distance, as a person writes them.
+TEST(ProgramEnclosure, FindsNoStepBetweenThePiecesOfAWindow) {
+  RandomPrograms chance(test_seed());
+  for (int n = 0; n < rounds(200); ++n) {
+    const double first = chance.between(-0.5, 0.5);
+    const double second = first + chance.between(0.001, 0.5);
+    const double k[] = {chance.between(0.0, 1e3), chance.between(0.0, 1e3),
+                        chance.between(0.0, 1e3)};
+    const Term d = q(Quantity::kDistance);
+    const Term low = k[0] * (d - first);
+    const Term middle = k[1] * (d - first);
+    const Term high = k[1] * (second - first) + k[2] * (d - second);
+    const Term inside = both(d > first, d <= second);
+    const LinkBox box{{first - chance.between(0.0, 0.5), second + chance.between(0.0, 0.5)},
+                      {-1.0, 1.0},
+                      0.1,
+                      {},
+                      {}};
+    const Term chosen =
+        three(Operation::kSelect, inside, middle, three(Operation::kSelect, d > second, high, low));
+    EXPECT_FALSE(plan::has_step(chosen.program, box, box)) << n;
+    const Term stepped = three(Operation::kSelect, inside, middle + 0.01,
+                               three(Operation::kSelect, d > second, high, low));
+    EXPECT_TRUE(plan::has_step(stepped.program, box, box)) << n;
+  }
+}
+
+/// A step that some speeds alone have, and one beyond the reach.
+TEST(ProgramEnclosure, FindsAStepOfSomeSpeedsAndOneFarAway) {
+  const Term d = q(Quantity::kDistance);
+  const Term v = q(Quantity::kSpeed);
+  const LinkBox box{{0.0, 0.2}, {-1.0, 1.0}, 0.1, {}, {}};
+  for (const double sign : {-1.0, 1.0}) {
+    const Term push = 10.0 * two(Operation::kMax, sign * v - 0.1, 0.0);
+    const Term law = 1000.0 * d + three(Operation::kSelect, d > 0.11, push, 0.0);
+    EXPECT_TRUE(plan::has_step(law.program, box, box)) << sign;
+  }
+  LinkBox all = box;
+  all.distance = {-1e9, 1e9};
+  const Term far = three(Operation::kSelect, d > 3.0, 1000.0 * d + 300.0, 1000.0 * d);
+  EXPECT_FALSE(plan::has_step(far.program, box, box));
+  EXPECT_TRUE(plan::has_step(far.program, all, box));
 }
 
 }  // namespace

@@ -179,6 +179,20 @@ TEST(Slope, OfAnExpressionThatJumpsOrGrowsBeyondAllEnergyIsInUncertainty) {
             nullptr);
 }
 
+/// A step is not certain where it is in reach, and ends what is bounded where it is not.
+TEST(Slope, OfAnExpressionWithAStepHoldsUpToTheStep) {
+  const Term e = q(Quantity::kElongation);
+  const engine::StateMachine law = state_machine(
+      0.0, expression_law(three(Operation::kSelect, e > 0.01, 1e3 * e + 30.0, 1e3 * e)));
+  Reach reach{0.001};
+  reach.brought = 1e-5;  // stretches it by 0.14 mm
+  const Slope near = largest_slope(law, 0.1, 1, reach);
+  EXPECT_EQ(near.uncertainty, nullptr);
+  EXPECT_FALSE(near.bounded);
+  reach.brought = 1.0;  // by 45 mm
+  EXPECT_NE(largest_slope(law, 0.1, 1, reach).uncertainty, nullptr);
+}
+
 TEST(Slope, VariesByWhatIsBetweenTheSteepestAndTheFlattestPiece) {
   const Term e = q(Quantity::kElongation);
   const Term d = q(Quantity::kDistance);

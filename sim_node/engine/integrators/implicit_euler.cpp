@@ -17,6 +17,7 @@ double half_loss(const WorldState& world, double product) noexcept {
 }
 
 }  // namespace
+
 ImplicitEuler::ImplicitEuler(const NetworkDescription& network)
     : FullStepIntegrator(4 * network.mats.size()),
       matrix_(network),
@@ -49,6 +50,17 @@ double ImplicitEuler::loss_of_creep(const WorldState& world) noexcept {
   return half_loss(world, matrix_.viscous_product(world.mats, change_.data(), carried_.data()));
 }
 
+/// Ports feel the force that is solved for, and PortInputs counts that of the beginning. `change_` being dt (v+ - v).
+/// @return energy [J]
+double ImplicitEuler::work_of_change_at_ports(const WorldState& world) noexcept {
+  if (world.outside.ports().empty()) return 0.0;
+  std::fill(carried_.begin(), carried_.end(), 0.0);
+  for (const std::uint32_t port : world.outside.ports()) {
+    column(carried_, port) = column(before_, port);
+  }
+  return half_loss(world, matrix_.viscous_product(world.mats, change_.data(), carried_.data()));
+}
+
 Moved ImplicitEuler::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
@@ -67,6 +79,7 @@ Moved ImplicitEuler::step(WorldState& world) noexcept {
   matrix_.solve(change_.data());
   pending_.dissipated +=
       half_loss(world, matrix_.viscous_product(mats, change_.data(), before_.data()));
+  pending_.port_work += work_of_change_at_ports(world);
   if (world.step_count < kStepsOfStart) pending_.dissipated += loss_of_creep(world);
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += before_[i];
   moved.non_finite_mats = mats.move_by(change_);

@@ -39,6 +39,7 @@ class ImplicitEuler final : public FullStepIntegrator {
 
  private:
   double loss_of_creep(const WorldState& world) noexcept;
+  double work_of_change_at_ports(const WorldState& world) noexcept;
 
   StiffnessMatrix matrix_;
   AlignedVector<double> change_;   // of the displacement of a period, then what it is solved for

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <queue>
 #include <vector>
 
@@ -382,29 +381,96 @@ double steepest(const engine::Program& program, const LinkBox& whole, std::size_
 
 constexpr double kNearEnough = 0.02;
 
-/// Halves of a box along one variable, in which it is not decided which of two values is taken.
-class UndecidedHalves {
+double extent_of(const Interval& interval) {
+  return interval.high - interval.low;
+}
+
+/// Looks along a variable for a place where a program steps from one value to another.
+class StepSearch {
  public:
-  UndecidedHalves(const engine::Program& program, const LinkBox& box, Interval LinkBox::*variable) {
-    const Interval& whole = box.*variable;
-    const double middle = 0.5 * (whole.low + whole.high);
-    for (const Interval& half : {Interval{whole.low, middle}, Interval{middle, whole.high}}) {
-      LinkBox part = box;
-      part.*variable = half;
-      Evaluation evaluation(part);
-      evaluation.enclose(program);
-      if (evaluation.is_undecided()) boxes_[count_++] = part;
+  /// @param smallest  what is left of the way where the two values are compared
+  StepSearch(const engine::Program& program, Interval LinkBox::*variable, double smallest)
+      : program_(program),
+        variable_(variable),
+        slope_(variable == &LinkBox::distance ? 0 : 1),
+        smallest_(smallest) {}
+
+  /// @param line  all but the variable are points
+  bool finds_in(LinkBox line) const {
+    constexpr int kMaxLooks = 400;
+    std::vector<Interval> parts{line.*variable_};
+    for (int look = 0; look < kMaxLooks && !parts.empty(); ++look) {
+      const Interval part = parts.back();
+      parts.pop_back();
+      line.*variable_ = part;
+      Evaluation evaluation(line);
+      evaluation.enclose(program_);
+      if (!evaluation.is_undecided()) continue;
+      const double middle = 0.5 * (part.low + part.high);
+      if (extent_of(part) > smallest_ && middle > part.low && middle < part.high) {
+        parts.push_back({middle, part.high});
+        parts.push_back({part.low, middle});
+      } else if (steps_between_the_ends_of(line)) {
+        return true;
+      }
     }
-  }
-  std::size_t count() const { return count_; }
-  void add_to(std::vector<LinkBox>& boxes) const {
-    boxes.insert(boxes.end(), boxes_.begin(), boxes_.begin() + static_cast<std::ptrdiff_t>(count_));
+    return false;
   }
 
  private:
-  std::array<LinkBox, 2> boxes_;
-  std::size_t count_ = 0;
+  /// The value and the slope at a place.
+  struct Place {
+    double value;
+    double slope;  // 0 where a condition just changes
+  };
+  Place at(LinkBox line, double place) const {
+    engine::LinkQuantities now{};
+    line.*variable_ = {place, place};
+    const double distance = line.distance.low;
+    now[static_cast<std::size_t>(Quantity::kDistance)] = distance;
+    now[static_cast<std::size_t>(Quantity::kElongation)] = distance - line.rest_length;
+    now[static_cast<std::size_t>(Quantity::kSpeed)] = line.speed.low;
+    now[static_cast<std::size_t>(Quantity::kMassA)] = line.mass_a.low;
+    now[static_cast<std::size_t>(Quantity::kMassB)] = line.mass_b.low;
+    now[static_cast<std::size_t>(Quantity::kRestLength)] = line.rest_length;
+    Evaluation evaluation(line);
+    const Enclosed here = evaluation.enclose(program_);
+    return {engine::value_of(program_, now),
+            evaluation.is_undecided() ? 0.0 : size_of(here.slope[slope_])};
+  }
+  /// True if the values at both ends are farther apart than the slopes there make them.
+  bool steps_between_the_ends_of(const LinkBox& line) const {
+    constexpr double kSpare = 4.0;
+    constexpr double kRounding = 1e-12;
+    const Interval& way = line.*variable_;
+    const Place low = at(line, way.low);
+    const Place high = at(line, way.high);
+    const double change = kSpare * (low.slope + high.slope) * extent_of(way) +
+                          kRounding * (std::abs(low.value) + std::abs(high.value));
+    return std::abs(high.value - low.value) > change;
+  }
+
+  const engine::Program& program_;
+  Interval LinkBox::*variable_;
+  std::size_t slope_;
+  double smallest_;
 };
+
+/// @param across  the other variable
+/// @param within  its places, and the way that is resolved
+bool has_step_along(Interval LinkBox::*variable, Interval LinkBox::*across,
+                    const engine::Program& program, const LinkBox& box, const LinkBox& within) {
+  constexpr double kSmallest = 1e-9;
+  constexpr int kLines = 9;
+  const StepSearch search(program, variable, kSmallest * extent_of(within.*variable));
+  for (int l = 0; l < kLines; ++l) {
+    LinkBox line = box;
+    const double place = (within.*across).low + (l + 0.5) / kLines * extent_of(within.*across);
+    line.*across = {place, place};
+    if (search.finds_in(line)) return true;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -418,35 +484,12 @@ SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& bo
           steepest(program, box, 1, rise, enough, box.bisections)};
 }
 
-bool has_step(const engine::Program& program, const LinkBox& box) {
-  CORDIS_ASSERT(box.bisections > 0);
-  constexpr double kSmallest = 1e-9;  // of the box
-  const auto is_wide = [&box](const LinkBox& part, Interval LinkBox::*variable) {
-    const auto extent = [variable](const LinkBox& any) {
-      return (any.*variable).high - (any.*variable).low;
-    };
-    return extent(part) > kSmallest * extent(box) && std::isfinite(extent(part));
-  };
-  std::vector<LinkBox> boxes{box};
-  for (int n = 0; n < box.bisections && !boxes.empty(); ++n) {
-    const LinkBox part = boxes.back();
-    boxes.pop_back();
-    std::optional<UndecidedHalves> best;
-    for (const auto variable : {&LinkBox::distance, &LinkBox::speed}) {
-      if (!is_wide(part, variable)) continue;
-      const UndecidedHalves halves(program, part, variable);
-      if (!best || halves.count() < best->count()) best = halves;
-    }
-    if (best) {
-      best->add_to(boxes);
-      continue;
-    }
-    Evaluation evaluation(part);
-    const Enclosed here = evaluation.enclose(program);
-    const bool is_steep = std::isinf(size_of(here.slope[0])) || std::isinf(size_of(here.slope[1]));
-    if (evaluation.is_undecided() && is_steep) return true;
-  }
-  return false;
+bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox& within) {
+  Evaluation whole(box);
+  whole.enclose(program);
+  if (!whole.is_undecided() || engine::asks_for_variable(program)) return false;
+  return has_step_along(&LinkBox::distance, &LinkBox::speed, program, box, within) ||
+         has_step_along(&LinkBox::speed, &LinkBox::distance, program, box, within);
 }
 
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest) {

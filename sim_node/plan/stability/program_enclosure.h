@@ -40,10 +40,13 @@ struct SteepestSlopes {
 /// where the bisections of the box are enough. Precondition: well-formed, of quantities known to laws.
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
-/// True if the program surely jumps in the box, or has no tangent there: where a condition changes, its two values are
-/// apart. Boxes are bisected down to 1e-9 of the whole. A step of less than 1e-8 of what the slopes make of the box is
-/// not seen, nor one that the bisections do not come to.
-bool has_step(const engine::Program& program, const LinkBox& box);
+/// True if the program has a step where one of its conditions changes: on lines over the distance at 9 speeds, and over
+/// the speed at 9 distances. The values at both sides of the place are compared. One of about 1e-9 of what the slopes
+/// make of `within` is not seen, nor one that ends between two lines.
+/// @param box     where
+/// @param within  its part that is resolved to 1e-9, and through which the lines go
+/// False of a program that asks for variables of the network. Precondition: well-formed, of quantities known to laws.
+bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox& within);
 
 /// No tangent of the program over the distance in a box is below this, found likewise with a tenth
 /// of the bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.

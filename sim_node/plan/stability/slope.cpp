@@ -102,7 +102,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const Interval within = box.distance;
   const SteepestSlopes near = steepest_slopes(program, box);
-  const bool jumps = has_step(program, box);
+  const LinkBox reached = box;
   const auto is_same = [&near](const SteepestSlopes& far) {
     return far.over_distance <= kSame * near.over_distance &&
            far.over_speed <= kSame * near.over_speed;
@@ -116,19 +116,21 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
     slope.uncertainty = kNoLargestSlope;
     return;
   }
-  if (jumps) {
+  if (has_step(program, reached, reached)) {
     slope.bounded = false;
     slope.uncertainty = kJumps;
     return;
   }
   slope.stiffness += near.over_distance;
   slope.viscosity += near.over_speed;
-  const bool has_largest = is_same(far);
+  const bool has_largest = is_same(far) && !has_step(program, box, reached);
   if (!has_largest) box.distance = within;
   slope.variation += near.over_distance - flattest_slope(program, box, near.over_distance);
   if (has_largest) return;
   slope.bounded = false;
-  if (needs_confinement) slope.uncertainty = kConfinesNothing;
+  const bool steps_beyond = is_same(far);
+  if (needs_confinement || (steps_beyond && !stretch.confined))
+    slope.uncertainty = kConfinesNothing;
 }
 
 /// What an expression without a largest slope has where it is looked at.
