@@ -100,9 +100,8 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
               reach.mass_b};
   box.bisections = reach.bisections;
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
-  const Interval within = box.distance;
-  const SteepestSlopes near = steepest_slopes(program, box);
   const LinkBox reached = box;
+  const SteepestSlopes near = steepest_slopes(program, reached);
   const auto is_same = [&near](const SteepestSlopes& far) {
     return far.over_distance <= kSame * near.over_distance &&
            far.over_speed <= kSame * near.over_speed;
@@ -123,14 +122,14 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   }
   slope.stiffness += near.over_distance;
   slope.viscosity += near.over_speed;
-  const bool has_largest = is_same(far) && !has_step(program, box, reached);
-  if (!has_largest) box.distance = within;
+  const bool is_alike_beyond = is_same(far);
+  const bool has_largest = is_alike_beyond && !has_step(program, box, reached);
+  if (!has_largest) box.distance = reached.distance;
   slope.variation += near.over_distance - flattest_slope(program, box, near.over_distance);
   if (has_largest) return;
   slope.bounded = false;
-  const bool steps_beyond = is_same(far);
-  if (needs_confinement || (steps_beyond && !stretch.confined))
-    slope.uncertainty = kConfinesNothing;
+  const bool steps_beyond = is_alike_beyond && !stretch.confined;
+  if (needs_confinement || steps_beyond) slope.uncertainty = kConfinesNothing;
 }
 
 /// What an expression without a largest slope has where it is looked at.
