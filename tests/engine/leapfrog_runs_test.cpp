@@ -228,7 +228,7 @@ TEST_P(LeapfrogRuns, MoveAsAScalarLoopMovesThem) {
       }
     }
   }
-  EXPECT_GT(by_axis, 100);
+  EXPECT_GT(by_axis, static_cast<int>(100 / kStepOfSeeds));
 }
 
 TEST_P(LeapfrogRuns, MoveTheMatsAsThoseStoredByMat) {
@@ -272,8 +272,8 @@ TEST_P(LeapfrogRuns, MoveTheMatsAsThoseStoredByMat) {
     }
     expect_same_motion(later, by_mat_later, where + ", changed");
   }
-  EXPECT_GT(light, 50);
-  EXPECT_GT(heavy, 30);
+  EXPECT_GT(light, static_cast<int>(50 / kStepOfSeeds));
+  EXPECT_GT(heavy, static_cast<int>(30 / kStepOfSeeds));
 }
 
 TEST_P(LeapfrogRuns, HaveTheSameBitsOnEveryWidthAndFromASnapshotOn) {
