@@ -1,5 +1,6 @@
 // tests/node/secured_participant_test.cpp -- who reads and writes in a secured session.
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,7 @@
 #include "node/security/keyring.h"
 #include "node/time.h"
 #include "tests/support/eventually.h"
+#include "tests/support/rounds.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::dds {
@@ -395,6 +398,32 @@ TEST_F(SecuredParticipant, FindsOneAgainThatLeftAndCameBack) {
       return read.take(found) && found.force_n()[0] == life + 1.0;
     })) << life;
   }
+}
+
+TEST_F(SecuredParticipant, OutlivesTheLastReceiverOfWhatItSends) {
+  std::atomic<bool> has_ended = false;
+  std::vector<std::thread> sims;
+  for (int i = 0; i < 4; ++i) {  // more than cores: the one that sends is held up now and then
+    sims.emplace_back([&] {
+      Participant sim(member("sim", Role::kSim));
+      Writer<msg::SceneFrame> frames(sim, Topic::kFrame);
+      msg::SceneFrame frame;
+      for (int sent = 0; !has_ended; ++sent) {
+        static_cast<void>(frames.write(frame));
+        if (sent % 4 == 0) std::this_thread::sleep_for(50us);
+      }
+    });
+  }
+  for (int life = 0; life < test::rounds(20); ++life) {
+    Participant view(member("view", Role::kView));
+    Reader<msg::SceneFrame> read(view, Topic::kFrame);
+    EXPECT_TRUE(eventually([&] {
+      msg::SceneFrame frame;
+      return read.take(frame);
+    })) << life;
+  }
+  has_ended = true;
+  for (std::thread& sim : sims) sim.join();
 }
 
 TEST(SecureDatagram, IsFitWhenItIsEncryptedOrFindsParticipants) {
