@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim_node/engine/core/hash_version.h"
+#include "sim_node/run/input_kind.h"
 
 namespace cordis::sim {
 namespace {
@@ -15,9 +16,10 @@ using namespace std::chrono_literals;
 static_assert(static_cast<int>(config::Clock::kRealtime) == msg::PACE_REALTIME);
 static_assert(static_cast<int>(config::Clock::kLockstep) == msg::PACE_LOCKSTEP);
 static_assert(static_cast<int>(config::Clock::kAsap) == msg::PACE_ASAP);
-static_assert(static_cast<int>(PassedBound::kPartners) == 1);  // as idl/inputs.idl says of `bound`
-static_assert(static_cast<int>(PassedBound::kNumber) == 2);
-static_assert(static_cast<int>(PassedBound::kEnergy) == 3);
+static_assert(static_cast<int>(PassedBound::kNone) == msg::BOUND_NONE);
+static_assert(static_cast<int>(PassedBound::kPartners) == msg::BOUND_PARTNERS);
+static_assert(static_cast<int>(PassedBound::kNumber) == msg::BOUND_NUMBER);
+static_assert(static_cast<int>(PassedBound::kEnergy) == msg::BOUND_ENERGY);
 
 constexpr std::size_t kInputsPerBatch = 1024;
 constexpr auto kBatchEvery = 30ms;  // so that a session that outruns time sends no flood of them
@@ -112,7 +114,7 @@ void InputPublisher::add(InputRecord& record) {
       if (record.command->verb == msg::VERB_LOAD)
         batch_.scene().push_back(scene_of(record.command->scene, record.number, record.turn));
       else
-        add_event(record, msg::INPUT_COMMAND);
+        add_event(record, input_kind_of(record.command->verb));
       record.command.reset();
       return;
     case InputRecord::Kind::kHold:
@@ -151,11 +153,8 @@ void InputPublisher::add_event(const InputRecord& record, msg::InputKind kind) {
   event.step(record.step);
   event.kind(kind);
   event.device_id(record.device_id);
-  event.bound(record.bound);
-  if (record.command) {
-    event.verb(static_cast<std::uint8_t>(record.command->verb));
-    event.argument(record.command->argument);
-  }
+  if (kind == msg::INPUT_LET_GO) event.bound(static_cast<msg::SceneBound>(record.bound));
+  if (record.command) event.argument(record.command->argument);
   batch_.event().push_back(std::move(event));
 }
 

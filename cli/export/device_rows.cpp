@@ -106,7 +106,7 @@ void DeviceRows::add(const msg::SceneInputs& batch) {
   for (const Input& input : inputs) {
     while (turn_ < turn_of(input)) play_turn();
     if (const auto* const* event = std::get_if<const msg::InputEvent*>(&input)) {
-      if ((*event)->kind() == msg::INPUT_COMMAND) ticks_.execute(**event);
+      ticks_.execute(**event);
     } else if (const auto* const* sample = std::get_if<const msg::InputSample*>(&input)) {
       const auto device = devices_.find((*sample)->device_id());
       if (device == devices_.end()) continue;

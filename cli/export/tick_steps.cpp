@@ -15,18 +15,18 @@ void TickSteps::begin_scene() noexcept {
   steps_left_ = 0;
 }
 
-void TickSteps::execute(const msg::InputEvent& command) {
-  switch (command.verb()) {
-    case msg::VERB_PAUSE:
-    case msg::VERB_RESUME:
-      paused_ = command.verb() == msg::VERB_PAUSE;
+void TickSteps::execute(const msg::InputEvent& input) {
+  switch (input.kind()) {
+    case msg::INPUT_PAUSE:
+    case msg::INPUT_RESUME:
+      paused_ = input.kind() == msg::INPUT_PAUSE;
       steps_left_ = 0;
       break;
-    case msg::VERB_STEP:
+    case msg::INPUT_STEP:
       paused_ = true;
-      steps_left_ = sim::read_command(msg::VERB_STEP, command.argument()).steps;
+      steps_left_ = sim::read_command(msg::VERB_STEP, input.argument()).steps;
       break;
-    case msg::VERB_RESET:
+    case msg::INPUT_RESET:
       begin_scene();
       break;
     default:

@@ -16,9 +16,9 @@ class TickSteps {
 
   /// A scene that was loaded.
   void load() noexcept { begin_scene(); }
-  /// A command that was executed before the next turn.
+  /// An input that took effect before the next turn; other ones than commands count for nothing.
   /// @throws std::invalid_argument when its words are none
-  void execute(const msg::InputEvent& command);
+  void execute(const msg::InputEvent& input);
   /// Plays the next turn. @return true if a gesture period of the scene was completed
   bool play_turn() noexcept;
 

@@ -9,6 +9,7 @@
 
 #include "node/config/count_text.h"
 #include "sim_node/engine/core/hash_version.h"
+#include "sim_node/run/input_kind.h"
 #include "sim_node/run/resimulation.h"
 
 namespace cordis::cli {
@@ -98,7 +99,7 @@ ResimResult resimulate(const ResimOptions& options) {
     result.samples += batch.sample().size();
     result.commands += batch.scene().size();
     for (const msg::InputEvent& event : batch.event()) {
-      if (event.kind() == msg::INPUT_COMMAND) ++result.commands;
+      if (sim::verb_of(event.kind())) ++result.commands;
     }
     resimulation.play(batch);
   } while (resimulation.gap().empty() && take.next(batch));

@@ -9,6 +9,7 @@
 #include <fastdds/rtps/common/SerializedPayload.h>
 
 #include "node/dds/message_types.h"
+#include "node/dds/old_inputs.h"
 
 namespace cordis::dds {
 namespace {
@@ -69,6 +70,9 @@ bool decode(std::span<const std::byte> payload, Message& message) noexcept {
   if (payload.size() < kEncapsulation) return false;
   if (std::is_same_v<Message, msg::SceneInputs> && payload.size() > kMaxInputs) return false;
   try {
+    if constexpr (std::is_same_v<Message, msg::SceneInputs>) {
+      if (is_old_inputs(payload)) return read_old_inputs(payload, message);
+    }
     typename TypeOf<Message>::Type type;
     const std::size_t missing = missing_bytes(type, message, payload.size());
     if (decode_padded(type, payload, missing, message)) return true;

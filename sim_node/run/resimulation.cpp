@@ -2,12 +2,14 @@
 #include "sim_node/run/resimulation.h"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/engine/description/integrator_kind.h"
+#include "sim_node/run/input_kind.h"
 
 namespace cordis::sim {
 namespace {
@@ -221,11 +223,11 @@ void Resimulation::apply(const msg::InputSample& sample) {
 }
 
 void Resimulation::apply(const msg::InputEvent& event) {
+  if (const std::optional<msg::ControlVerb> verb = verb_of(event.kind())) {
+    execute(maker_->prepare(read_command(*verb, event.argument()), {}));
+    return;
+  }
   switch (event.kind()) {
-    case msg::INPUT_COMMAND:
-      execute(maker_->prepare(
-          read_command(static_cast<msg::ControlVerb>(event.verb()), event.argument()), {}));
-      return;
     case msg::INPUT_HOLD:
       answer_received();
       return;
@@ -235,6 +237,8 @@ void Resimulation::apply(const msg::InputEvent& event) {
     case msg::INPUT_LET_GO:
       now().let_devices_go(static_cast<PassedBound>(event.bound()));
       return;
+    default:
+      break;
   }
   throw std::invalid_argument("there is no input of kind " +
                               std::to_string(static_cast<int>(event.kind())));

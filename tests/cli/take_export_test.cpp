@@ -13,6 +13,7 @@
 
 #include "cli/command_line.h"
 #include "cli/export/export.h"
+#include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/inputs.h"
 #include "idl/scene.h"
@@ -130,6 +131,7 @@ class TakeExport : public testing::Test {
     sample.axis_count(1);
     sample.value() = {position};
     msg::SceneInputs inputs;
+    inputs.wire_version(msg::WIRE_VERSION);
     inputs.epoch(5);
     inputs.batch(number);
     inputs.turns(number);

@@ -5,15 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "idl/control.h"
+#include "idl/inputs.h"
 
 namespace cordis::cli {
 namespace {
 
-msg::InputEvent command_of(msg::ControlVerb verb, const std::string& argument = "") {
+msg::InputEvent command_of(msg::InputKind kind, const std::string& argument = "") {
   msg::InputEvent event;
-  event.kind(msg::INPUT_COMMAND);
-  event.verb(static_cast<std::uint8_t>(verb));
+  event.kind(kind);
   event.argument(argument);
   return event;
 }
@@ -23,15 +22,15 @@ TEST(TickSteps, FollowsPausesAndSingleSteps) {
   EXPECT_TRUE(ticks.play_turn());
   EXPECT_TRUE(ticks.play_turn());
   EXPECT_EQ(ticks.step(), 8u);
-  ticks.execute(command_of(msg::VERB_PAUSE));
+  ticks.execute(command_of(msg::INPUT_PAUSE));
   EXPECT_FALSE(ticks.play_turn());
   EXPECT_EQ(ticks.step(), 8u);
-  ticks.execute(command_of(msg::VERB_STEP, "6"));
+  ticks.execute(command_of(msg::INPUT_STEP, "6"));
   EXPECT_TRUE(ticks.play_turn());
   EXPECT_FALSE(ticks.play_turn());
   EXPECT_FALSE(ticks.play_turn());
   EXPECT_EQ(ticks.step(), 14u);
-  ticks.execute(command_of(msg::VERB_RESUME));
+  ticks.execute(command_of(msg::INPUT_RESUME));
   EXPECT_TRUE(ticks.play_turn());
   EXPECT_EQ(ticks.step(), 16u);
 }
@@ -39,7 +38,7 @@ TEST(TickSteps, FollowsPausesAndSingleSteps) {
 TEST(TickSteps, CountsOneSceneOfSeveral) {
   TickSteps ticks(2, 4000.0, 1000.0);
   EXPECT_FALSE(ticks.play_turn());
-  ticks.execute(command_of(msg::VERB_RESET));
+  ticks.execute(command_of(msg::INPUT_RESET));
   EXPECT_TRUE(ticks.play_turn());
   EXPECT_EQ(ticks.step(), 4u);
   ticks.load();

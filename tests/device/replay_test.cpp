@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "idl/control.h"
 #include "idl/inputs.h"
 #include "idl/scene.h"
 #include "idl/topics.h"
@@ -50,6 +51,7 @@ void write_take(const std::filesystem::path& path, const std::vector<msg::InputS
                 msg::SceneDescription scene) {
   mcap::Writer writer(path);
   msg::SceneInputs batch;
+  batch.wire_version(msg::WIRE_VERSION);
   batch.sample(samples);
   const std::uint16_t inputs = writer.add_channel({0, 0, msg::TOPIC_INPUTS, "cdr", {}});
   const std::uint16_t scenes = writer.add_channel({0, 0, msg::TOPIC_DESCRIPTION, "cdr", {}});

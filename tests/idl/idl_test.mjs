@@ -68,7 +68,7 @@ for (const unit of units) {
 test('both parsers find the same values of enums', () => {
   assert.deepEqual(enums.map(own).sort(), [
     'ControlVerb', 'EventQuantity', 'InputClock', 'InputKind', 'MatKind', 'NodeKind', 'NodePhase', 'PortRole', 'ReachBound',
-    'SignalRate', 'SurfaceKind',
+    'SceneBound', 'SignalRate', 'SurfaceKind',
   ]);
   const generated = units.map((unit) => readFileSync(join(generatedFolder, `${basename(unit, '.idl')}.h`), 'utf8')).join('\n');
   for (const definition of enums) {
@@ -81,7 +81,7 @@ test('the version of the wire stands at the place where every version has it', (
   assert.ok(constants.get('WIRE_VERSION') >= 1);
   const placeOf = (name) =>
     structs.find((definition) => own(definition) === name).definitions.findIndex((field) => field.name === 'wire_version');
-  assert.deepEqual(['DeviceDescription', 'NodeStatus', 'SceneDescription'].map(placeOf), [1, 1, 0]);
+  assert.deepEqual(['DeviceDescription', 'NodeStatus', 'SceneDescription', 'SceneInputs'].map(placeOf), [1, 1, 0, 2]);
 });
 
 test('the page has the numbers of the contract', () => {

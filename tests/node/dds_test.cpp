@@ -3,9 +3,11 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 
 #include "idl/control.h"
 #include "idl/gesture.h"
+#include "idl/inputs.h"
 #include "idl/scene.h"
 #include "node/dds/payload.h"
 #include "node/dds/reader.h"
@@ -131,6 +134,99 @@ TEST(Payload, OfADescriptionOfAnOlderWireVersionKeepsWhatItHas) {
   payload.resize(payload.size() - 4);  // the count of `sets`
   ASSERT_TRUE(decode(payload, read));
   EXPECT_EQ(read.surface_mat(), description.surface_mat());
+}
+
+/// A payload, written by hand.
+class Bytes {
+ public:
+  template <class Number>
+  Bytes& put(Number number) {
+    while ((bytes_.size() - 4) % sizeof number != 0) bytes_.push_back(std::byte{0});
+    const auto* const begin = reinterpret_cast<const std::byte*>(&number);
+    bytes_.insert(bytes_.end(), begin, begin + sizeof number);
+    return *this;
+  }
+  Bytes& put(const std::string& text) {
+    put(static_cast<std::uint32_t>(text.size() + 1));
+    for (const char letter : text) bytes_.push_back(std::byte(letter));
+    bytes_.push_back(std::byte{0});
+    return *this;
+  }
+  const std::vector<std::byte>& all() const { return bytes_; }
+
+ private:
+  std::vector<std::byte> bytes_{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+};
+
+/// scene/inputs of version 9 with events: kind, verb, argument, bound.
+std::vector<std::byte> old_inputs(
+    const std::vector<std::tuple<std::uint32_t, std::uint8_t, std::string, std::uint8_t>>& events) {
+  using U32 = std::uint32_t;
+  using U64 = std::uint64_t;
+  Bytes bytes;
+  bytes.put(U64{77}).put(U64{3}).put(U32{msg::PACE_LOCKSTEP}).put(std::uint8_t{1});
+  bytes.put(std::string("0.1")).put(U32{8}).put(U64{1000}).put(U64{0});
+  bytes.put(U32{0}).put(U32{0}).put(U32{1});  // scenes, bounds of devices, samples
+  bytes.put(U64{11}).put(U64{600}).put(U32{5}).put(std::uint8_t{1}).put(std::uint8_t{1});
+  for (int i = 0; i < 4; ++i) bytes.put(U64{9});
+  bytes.put(std::int64_t{-2}).put(U32{1}).put(0.5).put(U32{1}).put(0.25);
+  bytes.put(static_cast<U32>(events.size()));
+  U64 number = 20;
+  for (const auto& [kind, verb, argument, bound] : events) {
+    bytes.put(number++).put(U64{601}).put(U64{2404}).put(kind).put(U32{5});
+    bytes.put(verb).put(argument).put(bound);
+  }
+  return bytes.all();
+}
+
+TEST(Payload, OfInputsOfWireVersion9IsReadAsOneOfToday) {
+  const std::vector<std::byte> payload = old_inputs({{0, msg::VERB_PAUSE, "", 0},
+                                                     {0, msg::VERB_RESUME, "", 0},
+                                                     {0, msg::VERB_STEP, "6", 0},
+                                                     {0, msg::VERB_RESET, "", 0},
+                                                     {0, msg::VERB_SET, "spring.stiffness=2", 0},
+                                                     {0, msg::VERB_STATE, "bow glides", 0},
+                                                     {1, 0, "", 0},
+                                                     {2, 0, "", 0},
+                                                     {3, 0, "", 2}});
+  msg::SceneInputs read;
+  read.event().resize(3);  // what a message had before
+  ASSERT_TRUE(decode(payload, read));
+  EXPECT_EQ(read.wire_version(), 9U);
+  EXPECT_EQ(read.epoch(), 77U);
+  EXPECT_EQ(read.batch(), 3U);
+  EXPECT_EQ(read.clock(), msg::PACE_LOCKSTEP);
+  EXPECT_TRUE(read.keeps_devices());
+  EXPECT_EQ(read.engine_version(), "0.1");
+  EXPECT_EQ(read.hash_version(), 8U);
+  EXPECT_EQ(read.turns(), 1000U);
+  ASSERT_EQ(read.sample().size(), 1U);
+  EXPECT_EQ(read.sample()[0].time_nsec(), -2);
+  EXPECT_EQ(read.sample()[0].value(), std::vector<double>{0.25});
+  std::vector<msg::InputKind> kinds;
+  for (const msg::InputEvent& event : read.event()) kinds.push_back(event.kind());
+  EXPECT_EQ(kinds,
+            (std::vector<msg::InputKind>{msg::INPUT_PAUSE, msg::INPUT_RESUME, msg::INPUT_STEP,
+                                         msg::INPUT_RESET, msg::INPUT_SET, msg::INPUT_STATE,
+                                         msg::INPUT_HOLD, msg::INPUT_REPEAT, msg::INPUT_LET_GO}));
+  EXPECT_EQ(read.event()[4].argument(), "spring.stiffness=2");
+  EXPECT_EQ(read.event()[8].bound(), msg::BOUND_NUMBER);
+  EXPECT_EQ(read.event()[8].number(), 28U);
+  EXPECT_EQ(read.event()[8].step(), 2404U);
+
+  msg::SceneInputs again;
+  ASSERT_TRUE(decode(encode(read), again));
+  EXPECT_EQ(again.event(), read.event());
+  for (std::size_t size = 0; size < payload.size(); ++size)
+    EXPECT_FALSE(decode(std::span(payload).first(size), again)) << "cut at " << size;
+}
+
+TEST(Payload, OfInputsOfWireVersion9WithAnEventThatIsNoneIsRefused) {
+  msg::SceneInputs read;
+  EXPECT_FALSE(decode(old_inputs({{4, 0, "", 0}}), read)) << "kind";
+  EXPECT_FALSE(decode(old_inputs({{0, msg::VERB_LOAD, "", 0}}), read));
+  EXPECT_FALSE(decode(old_inputs({{0, msg::VERB_GET, "", 0}}), read));
+  EXPECT_FALSE(decode(old_inputs({{3, 0, "", 4}}), read)) << "bound";
 }
 
 TEST(Payload, OfAFrameHasItsBondsAndTheForcesOnItsPorts) {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "idl/control.h"
 #include "idl/inputs.h"
 #include "idl/scene.h"
 #include "idl/topics.h"
@@ -59,6 +60,7 @@ TEST(SceneWords, AreThoseOfADescriptionUntilAnotherSceneComes) {
 TEST(SceneWords, NameThePlanOfEachSceneThatBegins) {
   SceneWords words;
   msg::SceneInputs batch;
+  batch.wire_version(msg::WIRE_VERSION);
   batch.clock(msg::PACE_LOCKSTEP);
   batch.engine_version("1.2");
   batch.hash_version(3);

@@ -19,6 +19,7 @@
 #include "cli/offline/offline_session.h"
 #include "cli/resim/rehash.h"
 #include "cli/verbs.h"
+#include "idl/control.h"
 #include "idl/topics.h"
 #include "node/dds/payload.h"
 #include "record_node/mcap/reader.h"
@@ -201,6 +202,7 @@ TEST(Resim, ABatchThatWantsTooManyTurnsIsDamaged) {
 
 TEST(Resim, AMessageOfInputsHasAtMost16MiB) {
   msg::SceneInputs batch;
+  batch.wire_version(msg::WIRE_VERSION);
   batch.engine_version(std::string(15 << 20, 'x'));
   EXPECT_TRUE(dds::decode(dds::encode(batch), batch));
   batch.engine_version(std::string(17 << 20, 'x'));

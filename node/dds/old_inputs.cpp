@@ -1,0 +1,108 @@
+// node/dds/old_inputs.cpp
+#include "node/dds/old_inputs.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+
+#include "node/assert.h"
+
+namespace cordis::dds {
+namespace {
+
+using eprosima::fastcdr::Cdr;
+
+constexpr std::uint32_t kLastOld = 9;  // version of the wire
+constexpr std::size_t kPlace = 20;     // of wire_version, and of the clock before: 0..2
+
+/// Kinds of version 9, in their order. Their verb and bound had a byte each.
+enum class OldKind : std::uint32_t { kCommand, kHold, kRepeat, kLetGo };
+
+/// Kinds of today of the verbs of version 9, in the order of msg::ControlVerb. Those without a kind
+/// never stood in an input: a scene that was loaded has a list of its own.
+constexpr std::array kKindOfVerb{msg::INPUT_PAUSE, msg::INPUT_RESUME, msg::INPUT_STEP,
+                                 msg::INPUT_RESET, msg::INPUT_HOLD,  // load
+                                 msg::INPUT_SET,   msg::INPUT_STATE};
+constexpr std::size_t kLoad = 4;
+
+/// @return false when the kind, verb or bound does not exist
+bool translate(std::uint32_t old_kind, std::uint8_t verb, std::uint8_t bound,
+               msg::InputEvent& event) {
+  switch (static_cast<OldKind>(old_kind)) {
+    case OldKind::kCommand:
+      if (verb >= kKindOfVerb.size() || verb == kLoad) return false;
+      event.kind(kKindOfVerb[verb]);
+      return true;
+    case OldKind::kHold:
+      event.kind(msg::INPUT_HOLD);
+      return true;
+    case OldKind::kRepeat:
+      event.kind(msg::INPUT_REPEAT);
+      return true;
+    case OldKind::kLetGo:
+      event.kind(msg::INPUT_LET_GO);
+      event.bound(static_cast<msg::SceneBound>(bound));
+      return bound <= msg::BOUND_ENERGY;
+  }
+  return false;
+}
+
+template <class Value>
+Value read(Cdr& cdr) {
+  Value value{};
+  cdr >> value;
+  return value;
+}
+
+/// @return false when it is none
+bool read_event(Cdr& cdr, msg::InputEvent& event) {
+  event.number(read<std::uint64_t>(cdr));
+  event.turn(read<std::uint64_t>(cdr));
+  event.step(read<std::uint64_t>(cdr));
+  const auto kind = read<std::uint32_t>(cdr);
+  event.device_id(read<std::uint32_t>(cdr));
+  const auto verb = read<std::uint8_t>(cdr);
+  event.argument(read<std::string>(cdr));
+  return translate(kind, verb, read<std::uint8_t>(cdr), event);
+}
+
+}  // namespace
+
+bool is_old_inputs(std::span<const std::byte> payload) noexcept {
+  if (payload.size() < kPlace + sizeof(std::uint32_t)) return false;
+  std::uint32_t word = 0;  // Cordis runs on little-endian machines, and so do the writers of takes
+  std::memcpy(&word, payload.data() + kPlace, sizeof word);
+  return word <= msg::PACE_ASAP;
+}
+
+bool read_old_inputs(std::span<const std::byte> payload, msg::SceneInputs& message) {
+  CORDIS_ASSERT(is_old_inputs(payload));
+  std::vector<char> bytes(payload.size());
+  std::memcpy(bytes.data(), payload.data(), payload.size());
+  eprosima::fastcdr::FastBuffer buffer(bytes.data(), bytes.size());
+  Cdr cdr(buffer, Cdr::DEFAULT_ENDIAN, Cdr::DDS_CDR);
+  cdr.read_encapsulation();
+  message.epoch(read<std::uint64_t>(cdr));
+  message.batch(read<std::uint64_t>(cdr));
+  message.wire_version(kLastOld);
+  message.clock(static_cast<msg::InputClock>(read<std::uint32_t>(cdr)));
+  message.keeps_devices(read<bool>(cdr));
+  message.engine_version(read<std::string>(cdr));
+  message.hash_version(read<std::uint32_t>(cdr));
+  message.turns(read<std::uint64_t>(cdr));
+  message.lost(read<std::uint64_t>(cdr));
+  cdr >> message.scene() >> message.reach() >> message.sample();
+  const auto count = read<std::uint32_t>(cdr);
+  message.event().clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!read_event(cdr, message.event().emplace_back())) return false;
+  }
+  return true;
+}
+
+}  // namespace cordis::dds
