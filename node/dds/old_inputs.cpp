@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,20 +24,19 @@ constexpr std::size_t kPlace = 20;     // of wire_version, and of the clock befo
 /// Kinds of version 9, in their order. Their verb and bound had a byte each.
 enum class OldKind : std::uint32_t { kCommand, kHold, kRepeat, kLetGo };
 
-/// Kinds of today of the verbs of version 9, in the order of msg::ControlVerb. Those without a kind
-/// never stood in an input: a scene that was loaded has a list of its own.
-constexpr std::array kKindOfVerb{msg::INPUT_PAUSE, msg::INPUT_RESUME, msg::INPUT_STEP,
-                                 msg::INPUT_RESET, msg::INPUT_HOLD,  // load
-                                 msg::INPUT_SET,   msg::INPUT_STATE};
-constexpr std::size_t kLoad = 4;
+/// Kinds of today of the verbs of version 9, in their order. `load` has none: a scene that was loaded
+/// stands in a list of its own.
+constexpr std::array<std::optional<msg::InputKind>, 7> kKindOfVerb{
+    msg::INPUT_PAUSE, msg::INPUT_RESUME, msg::INPUT_STEP, msg::INPUT_RESET,
+    std::nullopt,     msg::INPUT_SET,    msg::INPUT_STATE};
 
 /// @return false when the kind, verb or bound does not exist
 bool translate(std::uint32_t old_kind, std::uint8_t verb, std::uint8_t bound,
                msg::InputEvent& event) {
   switch (static_cast<OldKind>(old_kind)) {
     case OldKind::kCommand:
-      if (verb >= kKindOfVerb.size() || verb == kLoad) return false;
-      event.kind(kKindOfVerb[verb]);
+      if (verb >= kKindOfVerb.size() || !kKindOfVerb[verb]) return false;
+      event.kind(*kKindOfVerb[verb]);
       return true;
     case OldKind::kHold:
       event.kind(msg::INPUT_HOLD);

@@ -1,5 +1,6 @@
 // tests/integration/export_test.cpp -- the numbers of a take are those of the session.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
@@ -13,9 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "sim_node/engine/core/state_hash.h"
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
 #include "tests/support/test_domain.h"
@@ -314,6 +317,75 @@ TEST_F(Export, GivesTheSoundOfSimulateWithSilenceForWhatIsMissing) {
     ASSERT_EQ(row.size(), 2u);
     ASSERT_EQ(row[1], expected.at(time)[1]) << time;
   }
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+/// The text of a file of a state, as if its run had come to it at another step.
+std::string at_step(const std::string& text, std::uint64_t step) {
+  std::vector<double> all;
+  for (const std::string& word : words_of(text.substr(text.find("values:")))) {
+    if (word.size() < 18 || word.front() != '"') continue;
+    for (std::size_t i = 1; i + 16 < word.size(); i += 16)
+      all.push_back(std::bit_cast<double>(std::stoull(word.substr(i, 16), nullptr, 16)));
+  }
+  all.push_back(std::bit_cast<double>(step));
+  const auto before = [&](const std::string& key) { return text.substr(0, text.find(key)); };
+  return before("step:") +
+         fmt::format("step: {}\ncheck: \"{:016x}\"\n", step, engine::hash_of(all)) +
+         text.substr(text.find("values:"));
+}
+
+/// 12 days at 4 kHz are behind the scene when it begins, and its steps no longer fit into 32 bits.
+TEST_F(Export, CountsStepsBeyond32Bits) {
+  const std::string scenes = kLaunches + "scenes/";
+  ASSERT_EQ(run({"simulate", scenes + "plucked_string.yaml", "--duration", "1s", "--save-state",
+                 path("run.state")}),
+            0)
+      << said_;
+  constexpr std::uint64_t kStart = (std::uint64_t{1} << 32) - 1000;
+  std::ofstream(path("late.state")) << at_step(text_of(path("run.state")), kStart);
+  std::ofstream(path("scene.yaml"))
+      << text_of(scenes + "plucked_string.yaml") << "\nstart_state: late.state\n";
+  std::ofstream(path("late.yaml")) << fmt::format(R"(cordis: 1
+session: late
+clock: lockstep
+nodes:
+  sim: {{node: sim_node, scene: scene.yaml}}
+  keyboard: {{node: device_node, device: {}devices/keyboard.yaml, driver: script}}
+)",
+                                                  kLaunches);
+  ASSERT_EQ(run({"simulate", path("late.yaml"), "--duration", "1s", "--csv", path("simulate.csv"),
+                 "--mat", "string"}),
+            0)
+      << said_;
+  EXPECT_NE(said_.find("after 4294970296 steps"), std::string::npos) << said_;
+  ASSERT_EQ(run({"run", path("late.yaml"), "domain=" + std::to_string(test::own_domain()),
+                 "--record", path("take.mcap"), "--duration", "1s"}),
+            0)
+      << said_;
+  EXPECT_EQ(run({"resim", path("take.mcap")}), 0) << said_;
+  export_take({path("take.mcap"), "--csv", path("take.csv"), "--mat", "string"});
+  const auto exported = table_of(path("take.csv"));
+  const auto simulated = table_of(path("simulate.csv"));
+  ASSERT_EQ(simulated.size(), 1001u);
+  EXPECT_TRUE(simulated.contains("1073741.824")) << "the time of step 2^32";
+  ASSERT_GT(exported.size(), 500u);
+  const std::vector<std::string>& header = simulated.at("time [s]");
+  int moved = 0;
+  for (const auto& [time, row] : exported) {
+    ASSERT_TRUE(simulated.contains(time)) << time;
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (time == "time [s]" || !header[i].starts_with("string[") || row.at(i) == "nan") continue;
+      ASSERT_EQ(std::stof(row[i]), static_cast<float>(std::stod(simulated.at(time)[i])))
+          << header[i] << " at " << time << " s";
+      ++moved;
+    }
+  }
+  EXPECT_GT(moved, 500);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "sim_node/plan/stability/partner_bound.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -73,6 +74,28 @@ TEST(PackingBound, IsAboveTheDensestPackings) {
   EXPECT_LE(plan::packing_bound(2, 2.0, 1.0), 21.0);
   EXPECT_GE(plan::packing_bound(3, 2.0, 1.0), 54.0);
   EXPECT_GE(plan::packing_bound(3, 1.42, 1.0), 18.0);  // 12 + 6
+}
+
+TEST(PackingBound, KnowsNoUnitOfLength) {
+  for (const int dimension : {1, 2, 3}) {
+    for (const double q : {1.0, 1.3, 1.7, 3.1}) {
+      const double bound = plan::packing_bound(dimension, q, 1.0);
+      EXPECT_EQ(plan::packing_bound(dimension, 0.001 * q, 0.001), bound) << q;
+      EXPECT_EQ(plan::packing_bound(dimension, 500.0 * q, 500.0), bound) << q;
+    }
+  }
+}
+
+TEST(MaxNeighbours, AreWhatFitsExactlyAroundABall) {
+  for (int n = 7; n <= 60; ++n) {  // n discs of radius 1 that touch each other around one
+    const double own = 1.0 / std::sin(std::numbers::pi / n) - 1.0;
+    EXPECT_EQ(plan::max_neighbours(2, own, 1.0), n);
+  }
+  for (int n = 15; n <= 60; ++n) {  // n caps that fill the sphere
+    const double half_angle = std::acos(1.0 - 2.0 / n);
+    const double own = 1.0 / std::sin(half_angle) - 1.0;
+    EXPECT_EQ(plan::max_neighbours(3, own, 1.0), n);
+  }
 }
 
 TEST(MaxInReach, IsNeverBelowTheTrueNumberAtAnyPlace) {

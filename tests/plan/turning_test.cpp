@@ -183,6 +183,16 @@ TEST(Turning, OfASetIsHeldAgainstTheEnergyOfAllItsPairs) {
   EXPECT_TRUE(turning_stability(scene).turning.liaison.has_value()) << "31.25 J";
 }
 
+TEST(Turning, OfASetOfPointsAndBallsIsThatOfTheShortestPairWithALength) {
+  NetworkDescription scene = crowd_at(1.0, 2, state_machine(kNetStiffness));
+  scene.sets[0].rest_length = -1.0;  // the radii of both
+  scene.radius.assign(scene.mats.size(), 0.5);
+  scene.radius[0] = scene.radius[1] = 0.0;
+  EXPECT_DOUBLE_EQ(turning_stability(scene).turning.energy, kNetStiffness * 0.5 * 0.5 / 32.0);
+  scene.radius.assign(scene.mats.size(), 0.0);
+  EXPECT_TRUE(std::isinf(turning_stability(scene).turning.energy)) << "points alone";
+}
+
 TEST(Turning, IsThatOfLawsThatPushLikeASpring) {
   using engine::Ring;
   const engine::StateMachine lines[] = {
