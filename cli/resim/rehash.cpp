@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "idl/topics.h"
+#include "node/dds/old_inputs.h"
 #include "node/dds/payload.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/mcap/writer.h"
@@ -38,13 +39,14 @@ std::vector<std::byte> renewed_frame(const mcap::Message& message, const Compute
   return payload;
 }
 
+/// Likewise, in the layout of the take.
 std::vector<std::byte> renewed_inputs(const mcap::Message& message) {
   msg::SceneInputs inputs;
   if (!dds::decode(message.data, inputs))
     throw std::runtime_error("a message of scene/inputs cannot be read");
   inputs.hash_version(engine::kHashVersion);
   inputs.engine_version(CORDIS_VERSION);
-  return dds::encode(inputs);
+  return dds::is_old_inputs(message.data) ? dds::encode_old_inputs(inputs) : dds::encode(inputs);
 }
 
 void require(mcap::WriteStatus status, const mcap::Writer& writer) {

@@ -1,15 +1,18 @@
 // node/dds/old_inputs.cpp
 #include "node/dds/old_inputs.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
+#include <fastcdr/exceptions/Exception.h>
 
 #include "node/assert.h"
 
@@ -71,6 +74,19 @@ bool read_event(Cdr& cdr, msg::InputEvent& event) {
   return translate(kind, verb, read<std::uint8_t>(cdr), event);
 }
 
+void write_event(Cdr& cdr, const msg::InputEvent& event) {
+  cdr << event.number() << event.turn() << event.step();
+  const auto* const verb = std::ranges::find(kKindOfVerb, std::optional(event.kind()));
+  const bool is_command = verb != kKindOfVerb.end();
+  const OldKind kind = is_command                          ? OldKind::kCommand
+                       : event.kind() == msg::INPUT_HOLD   ? OldKind::kHold
+                       : event.kind() == msg::INPUT_REPEAT ? OldKind::kRepeat
+                                                           : OldKind::kLetGo;
+  cdr << static_cast<std::uint32_t>(kind) << event.device_id();
+  cdr << static_cast<std::uint8_t>(is_command ? verb - kKindOfVerb.begin() : 0);
+  cdr << event.argument() << static_cast<std::uint8_t>(event.bound());
+}
+
 }  // namespace
 
 bool is_old_inputs(std::span<const std::byte> payload) noexcept {
@@ -103,6 +119,28 @@ bool read_old_inputs(std::span<const std::byte> payload, msg::SceneInputs& messa
     if (!read_event(cdr, message.event().emplace_back())) return false;
   }
   return true;
+}
+
+std::vector<std::byte> encode_old_inputs(const msg::SceneInputs& message) {
+  try {
+    constexpr std::size_t kSpare = 64;
+    constexpr std::size_t kSpareOfEvent = 8;  // its verb, and what aligns the next one
+    std::vector<char> bytes(msg::SceneInputs::getCdrSerializedSize(message) + kSpare +
+                            kSpareOfEvent * message.event().size());
+    eprosima::fastcdr::FastBuffer buffer(bytes.data(), bytes.size());
+    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+    cdr.serialize_encapsulation();
+    cdr << message.epoch() << message.batch() << static_cast<std::uint32_t>(message.clock());
+    cdr << message.keeps_devices() << message.engine_version() << message.hash_version();
+    cdr << message.turns() << message.lost();
+    cdr << message.scene() << message.reach() << message.sample();
+    cdr << static_cast<std::uint32_t>(message.event().size());
+    for (const msg::InputEvent& event : message.event()) write_event(cdr, event);
+    const auto* const begin = reinterpret_cast<const std::byte*>(bytes.data());
+    return {begin, begin + cdr.getSerializedDataLength()};
+  } catch (const eprosima::fastcdr::exception::Exception& fault) {
+    throw std::runtime_error(std::string("inputs cannot be written: ") + fault.what());
+  }
 }
 
 }  // namespace cordis::dds

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "idl/inputs.h"
 
@@ -16,5 +17,9 @@ bool is_old_inputs(std::span<const std::byte> payload) noexcept;
 /// @return false when the bytes are no such message
 /// @throws std::bad_alloc and what Fast CDR throws, when counts ask for more than there is
 [[nodiscard]] bool read_old_inputs(std::span<const std::byte> payload, msg::SceneInputs& message);
+
+/// The payload of a message in the layout of those versions.
+/// @throws std::runtime_error when it has none
+std::vector<std::byte> encode_old_inputs(const msg::SceneInputs& message);
 
 }  // namespace cordis::dds

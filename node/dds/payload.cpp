@@ -8,6 +8,7 @@
 
 #include <fastdds/rtps/common/SerializedPayload.h>
 
+#include "node/assert.h"
 #include "node/dds/message_types.h"
 #include "node/dds/old_inputs.h"
 
@@ -95,6 +96,8 @@ bool decode(std::span<const std::byte> payload, Message& message) noexcept {
 template <class Message>
 std::vector<std::byte> encode(Message& message) {
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+  if constexpr (std::is_same_v<Message, msg::SceneInputs>)
+    CORDIS_ASSERT(message.wire_version() > msg::PACE_ASAP);
   typename TypeOf<Message>::Type type;
   Payload bytes(type.getSerializedSizeProvider(&message)());
   if (!type.serialize(&message, &bytes)) throw std::runtime_error("a message cannot be serialized");

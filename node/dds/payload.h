@@ -13,7 +13,8 @@ namespace cordis::dds {
 template <class Message>
 [[nodiscard]] bool decode(std::span<const std::byte> payload, Message& message) noexcept;
 
-/// The serialized payload of a message. @throws std::runtime_error when it has none
+/// The serialized payload of a message. Precondition: scene/inputs say their wire_version, for without it they
+/// read as those of before version 10. @throws std::runtime_error when it has none
 template <class Message>
 std::vector<std::byte> encode(Message& message);
 

@@ -12,11 +12,12 @@
 #include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include "node/dds/departure.h"
+#include "node/dds/library_faults.h"
 #include "node/dds/process_identity.h"
 #include "node/dds/resending_thread.h"
-#include "node/dds/secured_library.h"
 #include "node/dds/socket_buffer.h"
 
 namespace cordis::dds {
@@ -86,6 +87,14 @@ void set_security(const Security& security, rtps::PropertyPolicy& policy) {
   add("access.builtin.Access-Permissions.governance", file(security.governance));
   add("access.builtin.Access-Permissions.permissions", file(security.permissions));
   add("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+/// A secured participant has a GUID that depends on its certificate. Fast DDS takes two processes
+/// whose GUIDs begin alike for one, where messages need no socket, and loses them.
+void send_all_by_sockets() {
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 }
 
 fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
@@ -193,7 +202,8 @@ Presence::Presence(const ParticipantConfig& config, std::atomic<int>& peers_else
   fast::Log::SetVerbosity(fast::Log::Kind::Error);
   // A deadline that a device has missed when it went is no error.
   fast::Log::SetErrorStringFilter(std::regex("^(?!Could not set next deadline)"));
-  if (config.security.is_on()) prepare_secured_library();
+  take_out_library_faults();
+  if (config.security.is_on()) send_all_by_sockets();
   const std::vector<pid_t> threads_before = threads_of_process();
   participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(config.domain), participant_qos(config, ports_, link_), this,

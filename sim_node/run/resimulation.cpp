@@ -235,6 +235,8 @@ void Resimulation::apply(const msg::InputEvent& event) {
       if (DeviceExchange* device = now().find(event.device_id())) answer(*device);
       return;
     case msg::INPUT_LET_GO:
+      if (event.bound() > msg::BOUND_ENERGY)
+        throw std::invalid_argument("there is no bound " + std::to_string(event.bound()));
       now().let_devices_go(static_cast<PassedBound>(event.bound()));
       return;
     default:

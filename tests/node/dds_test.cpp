@@ -17,6 +17,7 @@
 #include "idl/gesture.h"
 #include "idl/inputs.h"
 #include "idl/scene.h"
+#include "node/dds/old_inputs.h"
 #include "node/dds/payload.h"
 #include "node/dds/reader.h"
 #include "node/dds/wire_version.h"
@@ -214,6 +215,9 @@ TEST(Payload, OfInputsOfWireVersion9IsReadAsOneOfToday) {
   EXPECT_EQ(read.event()[8].number(), 28U);
   EXPECT_EQ(read.event()[8].step(), 2404U);
 
+  const std::vector<std::byte> written = encode_old_inputs(read);
+  ASSERT_EQ(written.size(), payload.size());
+  for (std::size_t i = 0; i < payload.size(); ++i) ASSERT_EQ(written[i], payload[i]) << i;
   msg::SceneInputs again;
   ASSERT_TRUE(decode(encode(read), again));
   EXPECT_EQ(again.event(), read.event());

@@ -1,6 +1,5 @@
 // tests/node/secured_participant_test.cpp -- who reads and writes in a secured session.
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -401,14 +401,13 @@ TEST_F(SecuredParticipant, FindsOneAgainThatLeftAndCameBack) {
 }
 
 TEST_F(SecuredParticipant, OutlivesTheLastReceiverOfWhatItSends) {
-  std::atomic<bool> has_ended = false;
-  std::vector<std::thread> sims;
-  for (int i = 0; i < 4; ++i) {  // more than cores: the one that sends is held up now and then
-    sims.emplace_back([&] {
+  std::vector<std::jthread> sims;
+  for (int i = 0; i < 4; ++i) {  // so many that the one that sends is held up now and then
+    sims.emplace_back([&](const std::stop_token& end) {
       Participant sim(member("sim", Role::kSim));
       Writer<msg::SceneFrame> frames(sim, Topic::kFrame);
       msg::SceneFrame frame;
-      for (int sent = 0; !has_ended; ++sent) {
+      for (int sent = 0; !end.stop_requested(); ++sent) {
         static_cast<void>(frames.write(frame));
         if (sent % 4 == 0) std::this_thread::sleep_for(50us);
       }
@@ -422,8 +421,6 @@ TEST_F(SecuredParticipant, OutlivesTheLastReceiverOfWhatItSends) {
       return read.take(frame);
     })) << life;
   }
-  has_ended = true;
-  for (std::thread& sim : sims) sim.join();
 }
 
 TEST(SecureDatagram, IsFitWhenItIsEncryptedOrFindsParticipants) {

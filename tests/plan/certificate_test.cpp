@@ -217,6 +217,25 @@ TEST(Certificate, IsNotGivenToALawThatDrivesOnlyAtAFewSpeeds) {
   }
 }
 
+TEST(Certificate, IsNotGivenWhereEnergyMayCrushALinkOfALawWithoutALargestSlope) {
+  const engine::StateMachine machine = state_machine(0.0, engine::Power{1e4, 2.0});
+  NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 2, 44100.0);
+  join(scene, machine, 0.1);
+  scene.mats[1].velocity = Vec3(20.0, 0, 0);
+  EXPECT_EQ(why_uncertain(scene), "") << "0.2 J, and 0.8 J when two of them meet";
+  scene.mats[1].velocity = Vec3(100.0, 0, 0);  // 5 J; 3.3 J crush the link
+  EXPECT_NE(why_uncertain(scene).find("crush it to length 0"), std::string::npos)
+      << why_uncertain(scene);
+}
+
+TEST(Certificate, IsGivenToAPowerOfTheFirstDegreeAndNotToOneBelow) {
+  for (const auto& [exponent, is_jump] : {std::pair{0.5, true}, {1.0, false}, {1.5, false}}) {
+    NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 44100.0);
+    join(scene, state_machine(0.0, engine::Power{10.0, exponent}), 0.1);
+    EXPECT_EQ(!why_uncertain(scene).empty(), is_jump) << exponent << why_uncertain(scene);
+  }
+}
+
 TEST(Certificate, IsGivenToExpressionsThatOpposeEverySpeed) {
   const Term smooth = one(Operation::kTanh, kV / 0.01);
   const std::vector<Term> laws = {0.01 * kV * kV * kV, 0.02 * kV * size(kV), 0.05 * smooth,

@@ -44,6 +44,27 @@ TEST(Plan, BoundsTheViscosityOfTheBandByThatOfItsLinks) {
   EXPECT_NEAR(plan_of(scene, 10.0).band_edge.viscosity, w * w * 1e-4 + 0.3, 1e-9);
 }
 
+TEST(Plan, BoundsTheViscosityOfTheBandByThatOfItsSets) {
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-4;
+  engine::StateMachine machine = contact(200.0);
+  machine.states[0].viscosity = 0.05;
+  scene.state_machines.push_back(machine);
+  engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    set.set_p.push_back(i);
+    scene.mats.push_back(mass(0.1, Vec3(0.02 * i, 0, 0)));
+    scene.radius.push_back(0.01);
+  }
+  set.rest_length = -1.0;
+  set.range = 0.02;
+  scene.sets.push_back(set);
+  const double w = 20.0 * M_PI;
+
+  EXPECT_NEAR(plan_of(scene, 10.0).band_edge.viscosity, w * w * 0.05 / 200.0, 1e-9);
+}
+
 TEST(Plan, SaysWhatASwitchingMayGain) {
   NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 1.0, 0.0, 1e-3);
   EXPECT_FALSE(plan_of(scene, 10.0).worst_contact.has_value());

@@ -127,6 +127,21 @@ TEST(ProgramEnclosure, HoldsEveryValueAndTheSlopeBetweenAnyTwoPlaces) {
   EXPECT_GT(finite, count / 2);
 }
 
+TEST(ProgramEnclosure, OfANotIsOneNumberWhereItsArgumentIsSurelyZeroOrNot) {
+  const Program program = one(Operation::kNot, q(Quantity::kDistance)).program;
+  const auto value = [&](double low, double high) {
+    return plan::enclosure_of(program, {{low, high}, {}, 0.0, {}, {}}).value;
+  };
+  const auto is = [](const plan::Interval& interval, double low, double high) {
+    return interval.low == low && interval.high == high;
+  };
+  EXPECT_TRUE(is(value(0.5, 0.75), 0.0, 0.0));
+  EXPECT_TRUE(is(value(-0.75, -0.5), 0.0, 0.0));
+  EXPECT_TRUE(is(value(0.0, 0.0), 1.0, 1.0));
+  EXPECT_TRUE(is(value(-0.5, 0.5), 0.0, 1.0));
+  EXPECT_TRUE(is(value(0.0, 0.5), 0.0, 1.0));
+}
+
 /// A condition that changes within the box, of the distance, of the speed or of both.
 Term changing_within(RandomPrograms& chance, const LinkBox& box) {
   const auto inner = [&chance](const plan::Interval& all) {

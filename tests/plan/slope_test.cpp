@@ -303,5 +303,20 @@ TEST(Tangent, IsThatOfTheStateOfTheStartWhereItActs) {
   EXPECT_NEAR(plan::tangent_at_start(ball, {rest, rest - 1.0}).tension, 0.0, 1e-9);
 }
 
+/// A corner of a box flips the normal at 0. Deeper than 20 mm the table pulls.
+TEST(Slope, OfASurfaceIsNotCertainWhereItPullsDeepWithin) {
+  const plan::Reach reach{.elongation = 0.1, .speed = 1.0, .mass_a = {0.01, 0.01}};
+  const auto is_certain = [&](double from, double tension) {
+    const engine::Table table{{from - 0.001, from, 0.0},
+                              {tension, -1e4, -1e4}};  // of the elongation
+    const plan::Slope slope =
+        plan::largest_slope_at_surfaces(state_machine(0.0, table), 0.03, 0.0, reach);
+    return slope.uncertainty == nullptr;
+  };
+  EXPECT_TRUE(is_certain(-0.05, -1.0));
+  EXPECT_FALSE(is_certain(-0.05, 1.0)) << "20 mm within";
+  EXPECT_FALSE(is_certain(-0.035, 1.0)) << "5 mm within";
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -21,6 +21,7 @@
 #include "cli/verbs.h"
 #include "idl/control.h"
 #include "idl/topics.h"
+#include "node/dds/old_inputs.h"
 #include "node/dds/payload.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/mcap/writer.h"
@@ -305,6 +306,34 @@ TEST(Resim, ComparesPositionsOfAnotherHashVersionUntilTheTakeIsRenewed) {
   EXPECT_EQ(after.findings.frames, before.findings.frames);
   EXPECT_EQ(frame_sizes(old), frame_sizes(kGolden + "realtime_key.mcap"))
       << "the schema in the take is that of its own wire version";
+}
+
+/// True if all inputs of a take have the layout of before version 10 of the wire.
+bool has_old_inputs(const std::filesystem::path& take) {
+  const mcap::Reader reader(take);
+  mcap::MessageCursor cursor = reader.messages({.topics = {msg::TOPIC_INPUTS}});
+  int old = 0;
+  for (mcap::Message message; cursor.next(message); ++old) {
+    if (!dds::is_old_inputs(message.data)) return false;
+  }
+  return old > 0;
+}
+
+TEST(Resim, LeavesAnOldTakeWithCommandsInItsLayout) {
+  const mcap::TakeFolder folder;
+  const std::filesystem::path old = folder / "old.mcap";
+  std::filesystem::copy_file(kGolden + "commands.mcap", old);
+  ResimOptions options;
+  options.take = old.string();
+  options.keeps_computed = true;
+  const ResimResult before = resimulate(options);
+  ASSERT_GT(before.commands, 5U);
+  rehash(old.string(), before);
+  EXPECT_TRUE(has_old_inputs(old));
+  const ResimResult after = resim_of(old);
+  EXPECT_TRUE(after.is_equal());
+  EXPECT_EQ(after.commands, before.commands);
+  EXPECT_EQ(after.loss, "");
 }
 
 /// Writes a take with two lives of sim_node, of which the second counts its frames from 1 again.

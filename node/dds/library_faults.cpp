@@ -1,0 +1,111 @@
+// node/dds/library_faults.cpp
+#include "node/dds/library_faults.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include <dlfcn.h>
+#include <fastdds/rtps/common/CDRMessage_t.h>
+#include <fastdds/rtps/common/CacheChange.h>
+#include <fastdds/rtps/common/Guid.h>
+#include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <fastdds/rtps/writer/RTPSWriter.h>
+#include <fastdds/rtps/writer/StatefulWriter.h>
+
+// Classes of Fast DDS that it does not publish: the member functions of them that are checked here.
+namespace eprosima::fastrtps::rtps::security {
+class SecurityManager {
+ public:
+  bool encode_rtps_message(const CDRMessage_t& message, CDRMessage_t& encrypted,
+                           const std::vector<GuidPrefix_t>& receivers) const;
+};
+}  // namespace eprosima::fastrtps::rtps::security
+namespace eprosima::fastdds::dds {
+class DataWriterImpl {
+ public:
+  class InnerDataWriterListener {
+   public:
+    void onWriterChangeReceivedByAll(fastrtps::rtps::RTPSWriter* writer,
+                                     fastrtps::rtps::CacheChange_t* change);
+  };
+};
+}  // namespace eprosima::fastdds::dds
+
+namespace {
+
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastdds::dds::DataWriterImpl;
+using rtps::security::SecurityManager;
+
+/// The functions of the library itself; null where it has none.
+struct OfLibrary {
+  bool (*encode)(const SecurityManager*, const rtps::CDRMessage_t&, rtps::CDRMessage_t&,
+                 const std::vector<rtps::GuidPrefix_t>&);
+  bool (*remove_reader)(rtps::StatefulWriter*, const rtps::GUID_t&);
+  void (*received_by_all)(DataWriterImpl::InnerDataWriterListener*, rtps::RTPSWriter*,
+                          rtps::CacheChange_t*);
+};
+
+template <class Function>
+void find(const char* name, Function& function) noexcept {
+  function = reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+const OfLibrary& of_library() noexcept {
+  static const OfLibrary kFound = [] {
+    OfLibrary found{};
+    find(
+        "_ZNK8eprosima8fastrtps4rtps8security15SecurityManager19encode_rtps_messageERKNS1_"
+        "12CDRMessage_tERS4_RKSt6vectorINS1_12GuidPrefix_tESaIS9_EE",
+        found.encode);
+    find("_ZN8eprosima8fastrtps4rtps14StatefulWriter21matched_reader_removeERKNS1_6GUID_tE",
+         found.remove_reader);
+    find(
+        "_ZN8eprosima7fastdds3dds14DataWriterImpl23InnerDataWriterListener"
+        "27onWriterChangeReceivedByAllEPNS_8fastrtps4rtps10RTPSWriterEPNS5_13CacheChange_tE",
+        found.received_by_all);
+    return found;
+  }();
+  return kFound;
+}
+
+/// True while this thread takes a receiver out of a writer.
+thread_local bool a_receiver_leaves = false;
+
+}  // namespace
+
+/// Encrypts a message for its receivers. What waits for the thread that sends is sent without the
+/// lock of its writer. When the last receiver leaves in between, the list is empty, and Fast DDS
+/// 2.9.1 aborts. Such a message has no address to go to, so it needs no encryption.
+bool SecurityManager::encode_rtps_message(const rtps::CDRMessage_t& message,
+                                          rtps::CDRMessage_t& encrypted,
+                                          const std::vector<rtps::GuidPrefix_t>& receivers) const {
+  return receivers.empty() || of_library().encode(this, message, encrypted, receivers);
+}
+
+bool rtps::StatefulWriter::matched_reader_remove(const GUID_t& reader) {
+  a_receiver_leaves = true;
+  const bool removed = of_library().remove_reader(this, reader);
+  a_receiver_leaves = false;
+  return removed;
+}
+
+/// Removes a message that all receivers have, unless one of them is just taken out: then the lock of
+/// its addresses is held, which the thread that sends may wait for with the lock of all messages.
+void DataWriterImpl::InnerDataWriterListener::onWriterChangeReceivedByAll(
+    fastrtps::rtps::RTPSWriter* writer, fastrtps::rtps::CacheChange_t* change) {
+  if (!a_receiver_leaves) of_library().received_by_all(this, writer, change);
+}
+
+namespace cordis::dds {
+
+void take_out_library_faults() {
+  const OfLibrary& found = of_library();
+  if (found.encode == nullptr || found.remove_reader == nullptr ||
+      found.received_by_all == nullptr) {
+    throw std::runtime_error(
+        "this library of Fast DDS lacks functions that Cordis checks: install libfastrtps2.9");
+  }
+}
+
+}  // namespace cordis::dds

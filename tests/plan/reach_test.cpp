@@ -1,0 +1,108 @@
+// tests/plan/reach_test.cpp -- how far a scene may go, from figures worked out by hand.
+#include "sim_node/plan/stability/reach.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+using plan::Reach;
+using plan::reach_of;
+
+/// 2 kg at 3 m/s and 1 kg at rest, 5 m apart, in a field of 10 m/s^2.
+NetworkDescription two_masses() {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.gravity = Vec3(0, -10, 0);
+  scene.mats.push_back(mass(2.0, Vec3(0, 0, 0)));
+  scene.mats.push_back(mass(1.0, Vec3(3, 4, 0)));
+  scene.mats[0].velocity = Vec3(3, 0, 0);
+  return scene;
+}
+constexpr double kMotion = 9.0;       // 2 kg * (3 m/s)^2 / 2
+constexpr double kFall = 30.0 * 5.0;  // weights through the box about the masses
+
+TEST(Reach, HasTheEnergyOfMotionAndOfAFallThroughTheScene) {
+  const Reach reach = reach_of(two_masses());
+  EXPECT_DOUBLE_EQ(reach.brought, kMotion + kFall);
+  EXPECT_DOUBLE_EQ(reach.energy, 18.0) << "two that meet";
+  EXPECT_DOUBLE_EQ(reach.speed, 3.0);
+  EXPECT_DOUBLE_EQ(reach.force, 30.0);
+  EXPECT_EQ(reach.pushed, 0.0);
+
+  const Reach wider = reach_of(two_masses(), 4.0);
+  EXPECT_DOUBLE_EQ(wider.brought, 4.0 * (kMotion + kFall));
+  EXPECT_DOUBLE_EQ(wider.energy, 72.0);
+  EXPECT_DOUBLE_EQ(wider.speed, 6.0);
+}
+
+TEST(Reach, HasWhatLinksOfEachKindStoreAtTheStart) {
+  NetworkDescription spring = two_masses();
+  spring.links.push_back({0, 1, 1000.0, 0.0, 4.8});
+  EXPECT_NEAR(reach_of(spring).brought - kMotion - kFall, 20.0, 1e-9);
+
+  NetworkDescription maxwell = two_masses();
+  maxwell.maxwell_links.push_back({0, 1, 50.0, 1.0, 10.0});
+  EXPECT_NEAR(reach_of(maxwell).brought - kMotion - kFall, 1.0, 1e-9);
+
+  NetworkDescription states = two_masses();
+  states.state_machines.push_back(state_machine(1000.0));
+  states.state_links.push_back({0, 1, 0, 4.9});
+  EXPECT_NEAR(reach_of(states).brought - kMotion - kFall, 5.0, 1e-6);
+  EXPECT_DOUBLE_EQ(reach_of(states).elongation, 5.0);
+
+  NetworkDescription bend = two_masses();
+  bend.mats.push_back(mass(1.0, Vec3(3, 0, 0)));
+  engine::Bend corner;  // a right angle that is straight at rest: w^2 = 2
+  corner.mat_a = 0;
+  corner.mat_b = 2;
+  corner.mat_c = 1;
+  corner.stiffness = 7.0;
+  corner.length_ab = 3.0;
+  corner.length_bc = 4.0;
+  bend.bends.push_back(corner);
+  EXPECT_NEAR(reach_of(bend).brought - kMotion - 40.0 * 5.0, 7.0, 1e-9);
+}
+
+TEST(Reach, HasTheWorkOfADrivenForceThroughTheScene) {
+  NetworkDescription scene = two_masses();
+  engine::TimeFunction function;
+  function.time = {0.0, 0.1, 0.2};
+  function.value = {Vec3::Zero(), Vec3(0, -7, 0), Vec3(2, 0, 0)};
+  scene.time_functions.push_back(function);
+  scene.drives.push_back({1, 0, true});
+  const Reach reach = reach_of(scene, 2.0);
+  EXPECT_NEAR(reach.pushed, 2.0 * 7.0 * 5.0, 1e-9);
+  EXPECT_NEAR(reach.force, 37.0, 1e-9);
+  EXPECT_NEAR(reach.brought, 2.0 * (kMotion + kFall) + reach.pushed, 1e-9);
+}
+
+TEST(Reach, BetweenTwoMatsHasTheirMassesAndAllTheEnergy) {
+  const NetworkDescription scene = two_masses();
+  const Reach reach = plan::reach_between(reach_of(scene), scene, {0}, {1});
+  EXPECT_DOUBLE_EQ(reach.inverse_mass, 1.5);
+  EXPECT_DOUBLE_EQ(reach.energy, kMotion + kFall);
+  EXPECT_EQ(reach.mass_a.low, 2.0);
+  EXPECT_EQ(reach.mass_a.high, 2.0);
+  EXPECT_EQ(reach.mass_b.high, 1.0);
+  EXPECT_FALSE(reach.held);
+  EXPECT_NEAR(plan::energy_at(reach), 1.01 * (kMotion + kFall + 2.0 * 9.0 / 1.5), 1e-9);
+}
+
+TEST(Reach, BetweenGroupsHasTheRangeOfTheirMassesAndKnowsAPort) {
+  NetworkDescription scene = two_masses();
+  scene.mats.push_back({engine::MatKind::kPort, 0.0, Vec3(0, 1, 0)});
+  const Reach reach = plan::reach_between(reach_of(scene), scene, {0, 1}, {2});
+  EXPECT_EQ(reach.mass_a.low, 1.0);
+  EXPECT_EQ(reach.mass_a.high, 2.0);
+  EXPECT_EQ(reach.mass_b.high, 0.0) << "a port has none";
+  EXPECT_DOUBLE_EQ(reach.inverse_mass, 1.0) << "that of the lighter one";
+  EXPECT_TRUE(reach.held);
+  EXPECT_DOUBLE_EQ(reach.energy, 18.0);
+}
+
+}  // namespace
+}  // namespace cordis::test
