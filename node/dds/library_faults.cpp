@@ -25,6 +25,7 @@ class DataWriterImpl {
  public:
   class InnerDataWriterListener {
    public:
+    // NOLINTNEXTLINE(readability-identifier-naming)
     void onWriterChangeReceivedByAll(fastrtps::rtps::RTPSWriter* writer,
                                      fastrtps::rtps::CacheChange_t* change);
   };
