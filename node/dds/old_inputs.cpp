@@ -91,8 +91,12 @@ void write_event(Cdr& cdr, const msg::InputEvent& event) {
 
 bool is_old_inputs(std::span<const std::byte> payload) noexcept {
   if (payload.size() < kPlace + sizeof(std::uint32_t)) return false;
-  std::uint32_t word = 0;  // Cordis runs on little-endian machines, and so do the writers of takes
-  std::memcpy(&word, payload.data() + kPlace, sizeof word);
+  const bool is_little_endian = (payload[1] & std::byte{1}) != std::byte{0};  // [DDSI 10.2]
+  std::uint32_t word = 0;
+  for (std::size_t i = 0; i < sizeof word; ++i) {
+    const std::size_t place = kPlace + (is_little_endian ? sizeof word - 1 - i : i);
+    word = word << 8 | std::to_integer<std::uint32_t>(payload[place]);
+  }
   return word <= msg::PACE_ASAP;
 }
 

@@ -225,6 +225,23 @@ TEST(Payload, OfInputsOfWireVersion9IsReadAsOneOfToday) {
     EXPECT_FALSE(decode(std::span(payload).first(size), again)) << "cut at " << size;
 }
 
+TEST(Payload, OfInputsHasTheWireVersionInTheOrderOfItsBytes) {
+  std::vector<std::byte> payload(24, std::byte{0});
+  const auto is_old = [&](int order, std::uint8_t first, std::uint8_t last) {
+    payload[1] = std::byte(order);
+    payload[20] = std::byte{first};
+    payload[23] = std::byte{last};
+    return is_old_inputs(payload);
+  };
+  EXPECT_TRUE(is_old(1, 2, 0)) << "little-endian: a clock";
+  EXPECT_FALSE(is_old(1, 10, 0)) << "a version";
+  EXPECT_FALSE(is_old(1, 0, 2));
+  EXPECT_TRUE(is_old(0, 0, 2)) << "big-endian: a clock";
+  EXPECT_FALSE(is_old(0, 0, 10)) << "a version";
+  EXPECT_FALSE(is_old(0, 2, 0));
+  EXPECT_FALSE(is_old_inputs(std::span(payload).first(23)));
+}
+
 TEST(Payload, OfInputsOfWireVersion9WithAnEventThatIsNoneIsRefused) {
   msg::SceneInputs read;
   EXPECT_FALSE(decode(old_inputs({{4, 0, "", 0}}), read)) << "kind";
