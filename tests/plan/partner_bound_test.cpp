@@ -1,6 +1,7 @@
 // tests/plan/partner_bound_test.cpp
 #include "sim_node/plan/stability/partner_bound.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -183,6 +184,20 @@ TEST(Partners, UpToTheCertifiedNumberAreStable) {
   const std::uint32_t certified = plan_of(scene, 10.0).stability.sets[0].least;
   EXPECT_LE(certified, 399u);
   EXPECT_GE(certified, 395u);
+}
+
+TEST(Partners, AreToldFromTheLeastOfAnyMemberToTheMost) {
+  // More small balls fit around a large one than around another small one.
+  NetworkDescription scene = lattice(6, 0.05, contact(20.0), -1.0, 0.05);
+  for (std::size_t i = 0; i < scene.mats.size(); ++i)
+    scene.radius.push_back(i % 2 == 0 ? 0.005 : 0.02);
+  const plan::PartnerLimit limit = plan_of(scene, 10.0).stability.sets[0];
+  const auto [least, most] = std::ranges::minmax(limit.certified);
+  ASSERT_FALSE(limit.is_guaranteed());
+  EXPECT_LT(least, most);
+  EXPECT_EQ(limit.least, least);
+  EXPECT_EQ(limit.most, most);
+  EXPECT_EQ(limit.certified.size(), 216u);
 }
 
 TEST(Partners, OfManyLargeSetsAreRaisedTogetherAlone) {

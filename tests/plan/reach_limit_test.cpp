@@ -1,6 +1,8 @@
 // tests/plan/reach_limit_test.cpp -- the energy and speed up to which a step is certified.
 #include "sim_node/plan/reach_limit.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/plan/networks.h"
@@ -59,6 +61,25 @@ TEST(ReachLimit, IsNeverPassedWhereThereIsNone) {
   EXPECT_TRUE(ReachLimit{}.is_infinite());
   EXPECT_FALSE(is_beyond(ReachLimit{}, world, energy));
   EXPECT_FALSE(is_beyond({.speed = 0.1}, world, energy)) << "a speed alone certifies nothing";
+}
+
+TEST(ReachLimit, OfASetIsTheEnergyOfAPair) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.state_machines.push_back(state_machine(0.0, engine::LennardJones{0.01, 0.1, 0.3}));
+  engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    set.set_p.push_back(i);
+    scene.mats.push_back(mass(0.1, Vec3(0.11225 * i, 0, 0)));
+  }
+  set.range = 0.3;
+  scene.sets.push_back(set);
+  const ReachLimit limit = plan::reach_limit(scene);
+  EXPECT_FALSE(limit.is_infinite());
+  EXPECT_TRUE(std::isfinite(limit.pair_energy));
+  EXPECT_GT(limit.pair_energy, 0.0);
+  EXPECT_TRUE(std::isinf(limit.energy)) << "no link has such a law";
 }
 
 }  // namespace
