@@ -275,6 +275,40 @@ TEST(SurfaceShape, EndsAPlaneWhereAnotherOneIs) {
   }
 }
 
+/// The lines of a plane at `at` across the first of its edges, by their places along a direction.
+std::vector<double> line_places(const Point& at, const Point& normal, const Point& along,
+                                std::uint32_t space) {
+  const Box home{{-0.3, -0.1, -0.2}, {0.2, 0.1, 0.2}};
+  const Surfaces plane{test::surface("p", msg::SURFACE_PLANE, {at[0], at[1], at[2]},
+                                     {normal[0], normal[1], normal[2]}, {})};
+  const std::vector<SurfaceShape> shapes = shapes_of(plane, home, space);
+  std::vector<double> places;
+  for (const SurfaceEdge& edge : shapes[0].edges) {
+    const bool is_along = std::abs(dot(edge.to - edge.from, along)) >
+                          0.9 * std::sqrt(dot(edge.to - edge.from, edge.to - edge.from));
+    if (!is_along) places.push_back(dot(edge.from, along));
+  }
+  return places;
+}
+
+TEST(SurfaceShape, OfAPlaneThatMovesAlongItselfGoesAlong) {
+  for (const std::uint32_t space : {2u, 3u}) {
+    const Point normal{0.0, 1.0, 0.0};
+    const Point along{1.0, 0.0, 0.0};
+    const std::vector<double> still = line_places({0.0, -0.1, 0.0}, normal, along, space);
+    ASSERT_GT(still.size(), 10u);
+    const double cell = std::abs(still[6] - still[5]);
+    for (const double way : {0.3 * cell, -0.2 * cell, 1.7 * cell, 1e4 * cell + 0.4 * cell}) {
+      for (const double place : line_places({way, -0.1, 0.0}, normal, along, space)) {
+        const double cells = (place - way - still[5]) / cell;
+        const bool is_an_end = space == 3 && (place == still.front() || place == still.back());
+        EXPECT_TRUE(is_an_end || std::abs(cells - std::round(cells)) < 1e-6)
+            << place << " of a plane that is at " << way << " in " << space << "-D";
+      }
+    }
+  }
+}
+
 TEST(SurfaceBounds, CountBodiesWholeAndPlanesByTheirNearestPlace) {
   const Box matter{{-0.1, 0.0, -0.1}, {0.1, 0.2, 0.1}};
   const auto with = [&](const msg::SurfaceDescription& surface) {

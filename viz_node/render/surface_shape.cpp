@@ -118,6 +118,25 @@ Span round_span(double middle, double half, double cell) noexcept {
   return {cell * std::floor((middle - half) / cell), cell * std::ceil((middle + half) / cell)};
 }
 
+/// What is left of `place` over whole cells, 0 or more.
+double within_cell(double place, double cell) noexcept {
+  return place - cell * std::floor(place / cell);
+}
+
+/// Places of the lines of a grid that goes along with its plane: both ends, and each whole cell from
+/// `origin` between them.
+std::vector<double> grid_places(const Span& span, double origin, double cell) {
+  const long cells = std::lround((span.high - span.low) / cell);
+  const double first = span.low + within_cell(origin, cell);
+  std::vector<double> places{span.low};
+  for (long k = 0; k < cells; ++k) {
+    const double place = first + static_cast<double>(k) * cell;
+    if (place > span.low && place < span.high) places.push_back(place);
+  }
+  places.push_back(span.high);
+  return places;
+}
+
 SurfaceShape plane_of(const PlaneCutter& cutter, std::size_t own, const HalfSpace& plane,
                       const Box& home) {
   const Point u = across(plane.normal);
@@ -138,20 +157,15 @@ SurfaceShape plane_of(const PlaneCutter& cutter, std::size_t own, const HalfSpac
                   {{place_at(spread_u.low, spread_v.low), place_at(spread_u.high, spread_v.low),
                     place_at(spread_u.high, spread_v.high), place_at(spread_u.low, spread_v.high)},
                    plane.normal});
-  const auto cells_u = std::lround((spread_u.high - spread_u.low) / cell);
-  const auto cells_v = std::lround((spread_v.high - spread_v.low) / cell);
-  for (long k = 0; k <= cells_u; ++k) {
-    const double place = spread_u.low + static_cast<double>(k) * cell;
+  for (const double place : grid_places(spread_u, dot(plane.foot, u), cell))
     cutter.add_line(shape, own, place_at(place, spread_v.low), place_at(place, spread_v.high));
-  }
-  for (long k = 0; k <= cells_v; ++k) {
-    const double place = spread_v.low + static_cast<double>(k) * cell;
+  for (const double place : grid_places(spread_v, dot(plane.foot, v), cell))
     cutter.add_line(shape, own, place_at(spread_u.low, place), place_at(spread_u.high, place));
-  }
   return shape;
 }
 
-/// A line far past the view, with short lines on the side where matter cannot be.
+/// A line far past the view, with short lines on the side where matter cannot be. They go along with
+/// the plane.
 SurfaceShape line_of(const PlaneCutter& cutter, std::size_t own, const HalfSpace& plane,
                      const Box& home, double level) {
   const Point along{-plane.normal[1], plane.normal[0], 0.0};
@@ -167,7 +181,8 @@ SurfaceShape line_of(const PlaneCutter& cutter, std::size_t own, const HalfSpace
   const SurfaceEdge whole = shape.edges.front();
   const Point hatch = (-kHatchLength * cell) * normalized(plane.normal + along);
   const double length = dot(whole.to - whole.from, along);
-  for (double place = 0.5 * cell; place < length; place += cell) {
+  const double first = within_cell(dot(plane.foot - whole.from, along) + 0.5 * cell, cell);
+  for (double place = first; place < length; place += cell) {
     const Point from = whole.from + place * along;
     shape.edges.push_back({from, from + hatch});
   }

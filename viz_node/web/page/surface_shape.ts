@@ -155,20 +155,30 @@ function planeOf(plane: HalfSpace, borders: HalfSpace[], home: Box3): SurfaceSha
   const [us, vs] = [span(u, halves[0]), span(v, halves[1])];
   const base = plane.normal.clone().multiplyScalar(plane.at.dot(plane.normal));
   const placeAt = (alongU: number, alongV: number) => base.clone().addScaledVector(u, alongU).addScaledVector(v, alongV);
-  const places = ({ low, high }: Span) => Array.from({ length: Math.round((high - low) / cell) + 1 }, (_, k) => low + k * cell);
   const lines: [Vector3, Vector3][] = [
-    ...places(us).map((place): [Vector3, Vector3] => [placeAt(place, vs.low), placeAt(place, vs.high)]),
-    ...places(vs).map((place): [Vector3, Vector3] => [placeAt(us.low, place), placeAt(us.high, place)]),
+    ...gridPlaces(us, plane.at.dot(u), cell).map((place): [Vector3, Vector3] => [placeAt(place, vs.low), placeAt(place, vs.high)]),
+    ...gridPlaces(vs, plane.at.dot(v), cell).map((place): [Vector3, Vector3] => [placeAt(us.low, place), placeAt(us.high, place)]),
   ];
   const square = [placeAt(us.low, vs.low), placeAt(us.high, vs.low), placeAt(us.high, vs.high), placeAt(us.low, vs.high)];
   const corners = borders.reduce((left, border) => border.clipFace(left), square);
   return { faces: corners.length < 3 ? [] : [{ corners, normal: plane.normal }], edges: clippedLines(lines, borders) };
 }
 
+/** What is left of `place` over whole cells, 0 or more. */
+const withinCell = (place: number, cell: number): number => place - cell * Math.floor(place / cell);
+
+/** Places of the lines of a grid that goes along with its plane: both ends, and each whole cell from `origin` between them. */
+function gridPlaces({ low, high }: Span, origin: number, cell: number): number[] {
+  const cells = Math.round((high - low) / cell);
+  const first = low + withinCell(origin, cell);
+  const inner = Array.from({ length: cells }, (_, k) => first + k * cell).filter((place) => place > low && place < high);
+  return [low, ...inner, high];
+}
+
 const clippedLines = (lines: [Vector3, Vector3][], borders: HalfSpace[]): [Vector3, Vector3][] =>
   borders.reduce((left, border) => left.flatMap((line) => border.clipLine(line)), lines);
 
-/** A line far past the view, with short lines on the side where matter cannot be. */
+/** A line far past the view, with short lines on the side where matter cannot be. They go along with the plane. */
 function lineOf(plane: HalfSpace, borders: HalfSpace[], home: Box3, level: number): SurfaceShape {
   const along = new Vector3(-plane.normal.y, plane.normal.x, 0);
   const size = sizeOf(home);
@@ -180,7 +190,8 @@ function lineOf(plane: HalfSpace, borders: HalfSpace[], home: Box3, level: numbe
   const edges = clippedLines([whole], borders);
   const hatch = plane.normal.clone().add(along).normalize().multiplyScalar(-HATCH_LENGTH * cell);
   for (const [from, to] of [...edges]) {
-    for (let place = 0.5 * cell; place < to.clone().sub(from).dot(along); place += cell) {
+    const first = withinCell(plane.at.clone().sub(from).dot(along) + 0.5 * cell, cell);
+    for (let place = first; place < to.clone().sub(from).dot(along); place += cell) {
       const begin = from.clone().addScaledVector(along, place);
       edges.push([begin, begin.clone().add(hatch)]);
     }
