@@ -122,7 +122,8 @@ void TreeBuilder::end_entry(Value value) {
   const auto [first, is_new] = mapping.line_of_key.emplace(mapping.key, mapping.key_place.line);
   if (!is_new) {
     problems_.error(mapping.key_place, "duplicate key '" + mapping.key + "'",
-                    "first defined at line " + std::to_string(first->second));
+                    first->second > 0 ? "first defined at line " + std::to_string(first->second)
+                                      : "it may stand there once");
     return;
   }
   if (const auto brought = mapping.merged.find(mapping.key); brought != mapping.merged.end())

@@ -267,6 +267,15 @@ TEST(LoadWord, HasPlacesWithoutALine) {
   EXPECT_EQ(problems.text().substr(0, 25), "word: error: YAML syntax:");
 }
 
+TEST(LoadWord, SaysThatAKeyIsWrittenTwiceWithoutALine) {
+  Problems problems;
+
+  const Value value = load_word("{a: 1, a: 2}", "word", problems);
+
+  EXPECT_EQ(value.find("a").text(), "1");
+  EXPECT_EQ(problems.text(), "word: error: duplicate key 'a'\n  hint: it may stand there once");
+}
+
 class LoadFile : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder); }

@@ -139,6 +139,9 @@ int main(int count, char** words) {
       runs = std::strtoul(words[++i], nullptr, 10);
     } else if (word == "--seed" && i + 1 < count) {
       seed = std::strtoul(words[++i], nullptr, 10);
+    } else if (!std::filesystem::exists(word)) {
+      corpus.clear();
+      break;
     } else {
       for (const auto& path : files_of(word)) corpus.push_back(contents_of(path));
     }
