@@ -2,6 +2,7 @@
 #include "sim_node/plan/stability/slope.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -401,13 +402,26 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double elongation = point.elongation;
   const double scale = std::max(std::abs(point.distance), 1e-6);
-  const auto rise = [scale](const auto& tension, double argument) {  // of a kink, the flatter side
+  const double near = 1e-6 * scale;
+  const double nearer = 1e-9 * scale;
+  const auto rise = [=](const auto& tension, double argument) {  // of a kink, the flatter side
     double flattest = kNoLimit;
-    for (const double nearby : {1e-6 * scale, 1e-9 * scale}) {
+    for (const double nearby : {near, nearer}) {
       flattest = std::min({flattest, (tension(argument + nearby) - tension(argument)) / nearby,
                            (tension(argument) - tension(argument - nearby)) / nearby});
     }
     return flattest;
+  };
+  // A step is as high from near as from nearer.
+  const auto jumps = [=](const auto& tension, double argument) {
+    constexpr double kAsHigh = 0.5;
+    constexpr double kRounding = 1e-12;
+    const double here = tension(argument);
+    return std::ranges::any_of(std::array{1.0, -1.0}, [&](double side) {
+      const double far_off = std::abs(tension(argument + side * near) - here);
+      const double close_by = std::abs(tension(argument + side * nearer) - here);
+      return close_by > kAsHigh * far_off && close_by > kRounding * std::abs(here);
+    });
   };
   const auto elastic = [&](double e) {
     engine::LawPoint stretched = point;
@@ -439,7 +453,13 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
   const bool has_viscous_root = is_root(state.dissipation);
   tangent.sticks = has_viscous_root && std::get<engine::Power>(state.dissipation).coefficient > 0.0;
   const bool bends = !has_root && !has_viscous_root;
-  tangent.viscosity = state.viscosity + (bends ? rise(viscous, 0.0) : 0.0);
+  tangent.jumps = jumps(elastic, elongation) || (bends && jumps(viscous, 0.0));
+  if (tangent.jumps) {
+    tangent.stiffness = state.stiffness;
+    tangent.viscosity = state.viscosity;
+  } else {
+    tangent.viscosity = state.viscosity + (bends ? rise(viscous, 0.0) : 0.0);
+  }
   return tangent;
 }
 

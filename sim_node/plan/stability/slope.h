@@ -57,6 +57,7 @@ struct Tangent {
   double tension = 0.0;    ///< where it does not act, only what it pushes with at its limit [N]
   bool acts = false;       ///< surely: neither let go of, nor about to be, nor at its limit
   bool sticks = false;     ///< its force over the speed is steeper than any number at rest
+  bool jumps = false;      ///< its law has a step there, and so no tangent
 };
 
 Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);

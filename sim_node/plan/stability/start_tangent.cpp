@@ -133,6 +133,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::StateLink& link : network.state_links) {
     const Tangent tangent =
         tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
+    if (tangent.jumps) hold(link.mat_a, link.mat_b);
     if (tangent.sticks && weights.viscosity_of_state_link(index) == 0.0) has_limit_ = false;
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
@@ -176,6 +177,7 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
     const std::uint32_t b = mat_of(set, pair.member_b);
     const Tangent tangent = tangent_at_start(state_machine, start_point(network, set, pair));
     if (!tangent.acts && tangent.tension == 0.0) continue;
+    if (tangent.jumps) hold(a, b);
     if (on_surfaces) {
       add_at_surface(*engine::surface_of(network, a), b, network,
                      stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
@@ -209,6 +211,11 @@ void StartTangent::add_at_surface(const engine::Surface& surface, std::uint32_t 
   const double radius = std::abs(from.distance);
   const double across = turns && tension < 0.0 && radius > 0.0 ? tension / radius : 0.0;
   parts_.push_back({surface.mat, ball, from.normal, along, across, viscosity, 0.0});
+}
+
+void StartTangent::hold(std::uint32_t a, std::uint32_t b) {
+  root_of_inverse_mass_[a] = 0.0;
+  root_of_inverse_mass_[b] = 0.0;
 }
 
 void StartTangent::add_vector_spring(const engine::Link& link, double stiffness, double viscosity) {

@@ -14,7 +14,8 @@ namespace cordis::plan {
 /// The linear network that a scene is for small movements about the pose of its start: every link
 /// with its tangent there, state links and every pair of a set in the state of their start as far as
 /// they pull or push there; with the weights of its integrator at its step
-/// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out.
+/// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out. The ends of a law that
+/// has a step at the start, such as dry friction, count as held: small movements may not begin there.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {
@@ -58,6 +59,7 @@ class StartTangent {
   void add_at_surface(const engine::Surface& surface, std::uint32_t ball,
                       const engine::NetworkDescription& network, double along, double tension,
                       double viscosity);
+  void hold(std::uint32_t a, std::uint32_t b);
   void add_vector_spring(const engine::Link& link, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,

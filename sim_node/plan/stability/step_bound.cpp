@@ -72,13 +72,26 @@ void take_smaller(StepBound& bound, double step, std::uint32_t mat) {
   bound.mat = mat;
 }
 
-/// The row bound of a positive vector: the smallest of the steps of all rows.
+/// The row bound of a positive vector: the smallest of the steps of all rows. After some iterations
+/// the rows of all that hangs together are nearly alike; the mass is that of them which has the
+/// largest part of the kinetic energy.
 StepBound row_bound(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows) {
+  constexpr double kAlike = 1.01;
   StepBound bound;
-  for (std::uint32_t i = 0; i < x.size(); ++i) {
-    if (x[i] <= 0.0) continue;
+  const auto step_of = [&](std::uint32_t i) {
     const double per_mass = graph.inverse_mass[i] / x[i];
-    take_smaller(bound, limit_step(rows.stiffness[i] * per_mass, rows.viscosity[i] * per_mass), i);
+    return limit_step(rows.stiffness[i] * per_mass, rows.viscosity[i] * per_mass);
+  };
+  for (std::uint32_t i = 0; i < x.size(); ++i) {
+    if (x[i] > 0.0) take_smaller(bound, step_of(i), i);
+  }
+  double most = 0.0;
+  for (std::uint32_t i = 0; i < x.size(); ++i) {
+    if (!(x[i] > 0.0 && graph.inverse_mass[i] > 0.0) || step_of(i) > kAlike * bound.step) continue;
+    const double energy = x[i] * x[i] / graph.inverse_mass[i];
+    if (energy <= most) continue;
+    most = energy;
+    bound.mat = i;
   }
   return bound;
 }
