@@ -66,7 +66,7 @@ begin_load() {
 say() { printf '%s\n' "$*" | tee -a "$folder/summary.txt"; }
 
 # failed_in LOG: the names of the tests that failed, one in a line.
-failed_in() { sed -n 's/^\t *[0-9]* - \([^ ]*\) (.*/\1/p' "$1" | sort; }
+failed_in() { sed -n '/^The following tests FAILED/,$ s/^\t *[0-9]* - \([^ ]*\) (.*/\1/p' "$1" | sort; }
 
 rm -f "$folder"/run-*.log "$folder/summary.txt" "$folder/load.log"
 say "$runs runs, load $load: ctest $*"

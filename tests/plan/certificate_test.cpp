@@ -282,6 +282,18 @@ TEST(Certificate, OfAChoiceOfTheRateIsNotGivenEither) {
   EXPECT_TRUE(plan::uncertainty_of(scene, plan::liaison_graph(scene)).has_value());
 }
 
+TEST(Certificate, IsSurelyUnstableOfNothingThatAStepOfALawHolds) {
+  const Term dry = Term(0.05) * one(Operation::kSign, kV);
+  NetworkDescription scene = mass_at(Vec3(0.3, 0, 0), 1, 1000.0);
+  join(scene, viscous(engine::Expression{dry.program}), 0.3);
+  EXPECT_FALSE(stability_at_start(scene).diverges()) << "dry friction has no slope at rest";
+  EXPECT_TRUE(stability_at_start(scene).uncertainty.has_value());
+  // Another mass, on a spring too stiff for the step, is not held.
+  scene.mats.push_back(mass(kMass, Vec3(0.6, 0, 0)));
+  scene.links = {{0, 2, 1.1 * 4.0 * kMass * 1e6, 0.0, 0.6}};
+  EXPECT_TRUE(stability_at_start(scene).diverges());
+}
+
 TEST(Certificate, CountsWhatPullsAcrossInASet) {
   NetworkDescription scene;
   scene.dimension = 2;

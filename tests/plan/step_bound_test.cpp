@@ -43,6 +43,25 @@ TEST(StepBound, OfALongChainIsItsLimit) {
   EXPECT_LE(step, std::sqrt(0.001 / 400.0) / std::sin(100.0 * M_PI / 202.0));
 }
 
+TEST(StepBound, NamesTheMassThatMovesInWhatLimitsIt) {
+  // A stiff string, and soft springs that hang from its middle to the end of the list of masses.
+  NetworkDescription scene = string_in_space(10, 0.0, 1e-4);
+  const auto of_string = static_cast<std::uint32_t>(scene.mats.size());
+  const std::uint32_t middle = of_string / 2;
+  for (std::uint32_t tail = 0; tail < 3; ++tail) {
+    scene.mats.push_back(mass(0.05, Vec3(0.05, 0.03 * (1.0 + tail), 0)));
+    const std::uint32_t from = tail == 0 ? middle : of_string + tail - 1;
+    scene.links.push_back({from, of_string + tail, 3.0, 0.0, 0.03});
+  }
+
+  const plan::StepBound bound = certified_bound(scene, liaison_graph(scene));
+
+  EXPECT_LT(bound.mat, of_string);
+  ASSERT_TRUE(bound.liaison);
+  EXPECT_EQ(bound.liaison->kind, LiaisonKind::kLink);
+  EXPECT_LT(bound.liaison->index, scene.links.size() - 3);
+}
+
 /// A cube of 8 masses, every two of them joined at their distance, spinning about a slanted axis
 /// and shivering a little.
 NetworkDescription spinning_cube() {
