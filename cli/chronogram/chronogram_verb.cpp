@@ -72,7 +72,7 @@ int chronogram(const ChronogramWords& words) {
   node::install_stop_signals();
   const std::unique_ptr<SceneSource> source = open_source("chronogram", words.source);
   words.view.check_colour(source->description());
-  const double start_s = start_of(words.source, *source);
+  const double start_s = start_of(words.source, source->frame_span());
   std::vector<msg::SceneFrame> frames = take_frames(*source, start_s, every_s, count);
   const std::size_t found = frames.size();
   for (const std::string& note : source->notes()) node::print_text(stderr, note + "\n");

@@ -50,8 +50,9 @@ int film(const FilmWords& words) {
   const viz::ColourBy colour_by = words.view.colour_by();
   node::install_stop_signals();
   const std::unique_ptr<SceneSource> source = open_source("film", words.source);
-  const double start_s = start_of(words.source, *source);
-  const double duration_s = duration_of(words.duration, *source, start_s);
+  const TimeSpan span = source->frame_span();
+  const double start_s = start_of(words.source, span);
+  const double duration_s = duration_of(words.duration, span, start_s);
   words.view.check_colour(source->description());
   viz::FilmView view(source->description(), {.width = size.width,
                                              .height = size.height,
@@ -83,8 +84,14 @@ int film(const FilmWords& words) {
     node::print_text(stderr, source->failure() + "; what came before is kept\n");
     return kFailure;
   }
-  if (!node::stop_requested()) return kSuccess;
-  std::fputs("stopped before its time; what was drawn is kept\n", stderr);
+  if (node::stop_requested()) {
+    std::fputs("stopped before its time; what was drawn is kept\n", stderr);
+    return kFailure;
+  }
+  if (writer.count() == wanted) return kSuccess;
+  std::fprintf(stderr, "the scene ended after %s of %llu; what was drawn is kept\n",
+               config::count_text(writer.count(), "image").c_str(),
+               static_cast<unsigned long long>(wanted));
   return kFailure;
 }
 
@@ -106,7 +113,9 @@ void add_film_verb(CommandLine& line) {
       "A launch file is simulated with its devices, as by `cordis simulate`; no screen and no\n"
       "graphics card is needed. The same source gives the same pixels. Films are written with\n"
       "ffmpeg; a folder of images needs nothing. Ctrl-C keeps what was drawn.\n"
-      "Exit code: 0 all well, 1 stopped, diverged or disk full, 2 bad file or command line.\n\n"
+      "Exit code: 0 all well, 1 stopped, ended early, diverged or disk full, 2 bad file or "
+      "command\n"
+      "line.\n\n"
       "Examples:\n"
       "  cordis film launch_configs/plasticine.yaml --duration 4s -o plasticine.mp4\n"
       "  cordis film take.mcap --speed 0.25 -o slow.webm\n"

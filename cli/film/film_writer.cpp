@@ -43,6 +43,7 @@ std::vector<std::string> ffmpeg_words(const std::string& path, int width, int he
                                       double frames_per_s) {
   std::vector<std::string> words = {"ffmpeg",    "-y",
                                     "-loglevel", "error",
+                                    "-xerror",  // a full disk at the end is no success
                                     "-f",        "rawvideo",
                                     "-pix_fmt",  "rgb24",
                                     "-s",        fmt::format("{}x{}", width, height),
@@ -117,7 +118,7 @@ void FilmWriter::start_ffmpeg(int width, int height, double frames_per_s) {
 }
 
 void FilmWriter::fail() {
-  throw std::runtime_error("ffmpeg could not write " + path_ + "; its reason stands above");
+  throw std::runtime_error("cannot write " + path_ + " whole; what ffmpeg says of it stands above");
 }
 
 void FilmWriter::write(const viz::Image& image) {

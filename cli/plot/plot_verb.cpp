@@ -65,8 +65,9 @@ int plot(const PlotWords& words) {
   const std::unique_ptr<SceneSource> source = open_source("plot", words.source);
   const msg::SceneDescription& description = source->description();
   const std::vector<std::size_t> numbers = signals_of(description, words.signals);
-  const double start_s = start_of(words.source, *source);
-  const double end_s = start_s + duration_of(words.duration, *source, start_s);
+  const TimeSpan span = source->signal_span();
+  const double start_s = start_of(words.source, span);
+  const double end_s = start_s + duration_of(words.duration, span, start_s);
   SignalSeries rows;
   ProgressLine progress;
   source->read_signals(start_s, end_s, rows, [&](double time_s) {

@@ -24,8 +24,7 @@ class LiveSource final : public SceneSource {
   LiveSource(const std::string& session, const std::string& domain);
 
   const msg::SceneDescription& description() const noexcept override { return description_; }
-  double first_s() override { return first_s_; }
-  double duration_s() override { return 0.0; }
+  TimeSpan frame_span() override { return {first_s_, 0.0}; }
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
   void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;

@@ -16,8 +16,7 @@ class OfflineSource final : public SceneSource {
   OfflineSource(const std::string& file, const std::vector<std::string>& overrides);
 
   const msg::SceneDescription& description() const noexcept override { return description_; }
-  double first_s() override { return session_.start_s(); }
-  double duration_s() override { return session_.duration_s(); }
+  TimeSpan frame_span() override { return {session_.start_s(), session_.duration_s()}; }
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
   void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;

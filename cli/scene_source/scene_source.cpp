@@ -57,16 +57,15 @@ std::unique_ptr<SceneSource> open_source(const std::string& verb, const SourceWo
   return std::make_unique<LiveSource>(words.source, words.domain);
 }
 
-double start_of(const SourceWords& words, SceneSource& source) {
-  if (words.from.empty()) return source.first_s();
-  return std::max(seconds_of(parse_offset(words.from)), source.first_s());
+double start_of(const SourceWords& words, const TimeSpan& span) {
+  if (words.from.empty()) return span.first_s;
+  return std::max(seconds_of(parse_offset(words.from)), span.first_s);
 }
 
-double duration_of(const std::string& duration, SceneSource& source, double start_s) {
+double duration_of(const std::string& duration, const TimeSpan& span, double start_s) {
   if (!duration.empty()) return seconds_of(parse_duration(duration));
-  const double length_s = source.duration_s();
-  if (length_s <= 0.0) throw UsageError("say how long: --duration 2s");
-  const double left_s = source.first_s() + length_s - start_s;
+  if (span.duration_s <= 0.0) throw UsageError("say how long: --duration 2s");
+  const double left_s = span.first_s + span.duration_s - start_s;
   if (left_s <= 0.0) throw UsageError("--from lies behind the end of the scene");
   return left_s;
 }

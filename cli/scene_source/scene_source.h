@@ -19,6 +19,12 @@ struct SignalSeries {
   std::vector<double> value;
 };
 
+/// A stretch of simulated time.
+struct TimeSpan {
+  double first_s = 0.0;     ///< its start [s]
+  double duration_s = 0.0;  ///< its length [s]; 0 when only the reader ends it
+};
+
 /// A scene in motion. Times are simulated, from the start of the scene [s], and asked for in
 /// ascending order. The descriptions and frames are sound (viz_node/scene_check.h).
 class SceneSource {
@@ -26,10 +32,10 @@ class SceneSource {
   virtual ~SceneSource() = default;
 
   virtual const msg::SceneDescription& description() const noexcept = 0;
-  /// The earliest time there is.
-  virtual double first_s() = 0;
-  /// How long the source itself lasts, from first_s() on [s]; 0 when only its reader ends it.
-  virtual double duration_s() = 0;
+  /// The time that frames cover. @throws UsageError when there are none
+  virtual TimeSpan frame_span() = 0;
+  /// The time that rows of signals cover: they lie behind its start, up to its end.
+  virtual TimeSpan signal_span() { return frame_span(); }
 
   /// The frame nearest to a time; nothing behind the end.
   virtual std::optional<msg::SceneFrame> frame_at(double time_s) = 0;
@@ -60,11 +66,11 @@ void add_source_words(Verb& verb, SourceWords& words);
 /// @throws UsageError, config::ConfigError when there is no such thing or it is bad
 std::unique_ptr<SceneSource> open_source(const std::string& verb, const SourceWords& words);
 
-/// Where a view of the source begins: --from, or its first time.
-double start_of(const SourceWords& words, SceneSource& source);
+/// Where a view of the source begins: --from, or where the span does.
+double start_of(const SourceWords& words, const TimeSpan& span);
 
-/// How long a view lasts: `duration` where it says something, else the source itself.
+/// How long a view lasts: `duration` where it says something, else to the end of the span.
 /// @throws UsageError when neither does
-double duration_of(const std::string& duration, SceneSource& source, double start_s);
+double duration_of(const std::string& duration, const TimeSpan& span, double start_s);
 
 }  // namespace cordis::cli

@@ -2,6 +2,7 @@
 #include "cli/scene_source/take_source.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "cli/export/row_source.h"
 #include "cli/take_file.h"
@@ -17,21 +18,32 @@ TakeSource::TakeSource(const std::string& verb, const std::string& file, std::si
       frames_(*take_, msg::TOPIC_FRAME, loss_) {
   const std::string fault = viz::fault_of(scene_.description);
   if (!fault.empty()) throw UsageError(file + ": " + fault);
-  find_ends();
 }
 
-void TakeSource::find_ends() {
-  MessageSource<msg::SceneFrame> frames(*take_, msg::TOPIC_FRAME, loss_);
-  msg::SceneFrame frame;
-  bool is_first = true;
-  while (frames.next(frame)) {
+TimeSpan TakeSource::frame_span() {
+  ReadLoss loss;  // is found again by who reads on
+  MessageSource<msg::SceneFrame> frames(*take_, msg::TOPIC_FRAME, loss);
+  double first_s = std::numeric_limits<double>::infinity();
+  double last_s = 0.0;
+  for (msg::SceneFrame frame; frames.next(frame);) {
     if (!scene_.has(frame)) continue;
-    if (is_first) first_s_ = frame.simulated_s();
-    is_first = false;
-    last_s_ = std::max(last_s_, frame.simulated_s());
+    first_s = std::min(first_s, frame.simulated_s());
+    last_s = std::max(last_s, frame.simulated_s());
   }
-  if (is_first) throw UsageError(take_->path().string() + " has no frames of this scene");
-  loss_ = {};  // is found again by who reads on
+  if (first_s > last_s) throw UsageError(take_->path().string() + " has no frames of this scene");
+  return {first_s, last_s - first_s + 0.5 / scene_.description.frame_rate_hz()};
+}
+
+TimeSpan TakeSource::signal_span() {
+  ReadLoss loss;  // is found again by who reads on
+  SignalRowSource rows(*take_, scene_, msg::RATE_GESTURE, loss);
+  if (!rows.next()) return frame_span();
+  const double rate_hz = scene_.description.step_rate_hz();
+  const double period_s = 1.0 / scene_.description.gesture_rate_hz();
+  const double first_s = std::max(0.0, static_cast<double>(rows.step()) / rate_hz - period_s);
+  while (rows.next()) {
+  }
+  return {first_s, static_cast<double>(rows.step()) / rate_hz - first_s};
 }
 
 bool TakeSource::next(msg::SceneFrame& frame) {
@@ -56,10 +68,11 @@ void TakeSource::read_signals(double from_s, double to_s, SignalSeries& rows,
                               const std::function<bool(double)>& progress) {
   SignalRowSource source(*take_, scene_, msg::RATE_GESTURE, loss_);
   const std::size_t columns = source.columns().size();
+  const double half_step_s = 0.5 / scene_.description.step_rate_hz();  // ends are rounded
   while (source.next()) {
     const double time_s = static_cast<double>(source.step()) / scene_.description.step_rate_hz();
-    if (time_s > to_s || progress(time_s)) break;
-    if (time_s < from_s) continue;
+    if (time_s > to_s + half_step_s || progress(time_s)) break;
+    if (time_s < from_s - half_step_s) continue;
     rows.time_s.push_back(time_s);
     rows.value.insert(rows.value.end(), source.values(), source.values() + columns);
   }

@@ -17,19 +17,20 @@ namespace cordis::cli {
 class TakeSource final : public SceneSource {
  public:
   /// @param scene  number in the take, from 1
-  /// @throws UsageError when the take has no such scene, or no frames of it
+  /// @throws UsageError when the take has no such scene
   TakeSource(const std::string& verb, const std::string& file, std::size_t scene);
 
   const msg::SceneDescription& description() const noexcept override { return scene_.description; }
-  double first_s() override { return first_s_; }
-  double duration_s() override { return last_s_ - first_s_; }
+  /// From the first frame to half a period behind the last, so that an image shows it.
+  TimeSpan frame_span() override;
+  /// From one period before the first row to the last row; the span of the frames without rows.
+  TimeSpan signal_span() override;
   std::optional<msg::SceneFrame> frame_at(double time_s) override;
   void read_signals(double from_s, double to_s, SignalSeries& rows,
                     const std::function<bool(double)>& progress) override;
   std::vector<std::string> notes() const override;
 
  private:
-  void find_ends();
   bool next(msg::SceneFrame& frame);
 
   std::unique_ptr<mcap::Reader> take_;
@@ -39,8 +40,6 @@ class TakeSource final : public SceneSource {
   FramePicker picker_;
   std::uint64_t newest_frame_ = 0;
   std::uint64_t refused_ = 0;  // frames that do not fit the description
-  double first_s_ = 0.0;
-  double last_s_ = 0.0;
 };
 
 }  // namespace cordis::cli

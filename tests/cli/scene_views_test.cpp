@@ -21,6 +21,7 @@
 #include "record_node/mcap/reader.h"
 #include "tests/cli/captured_run.h"
 #include "tests/render/svg_reader.h"
+#include "tests/support/small_disk.h"
 
 namespace cordis::cli {
 namespace {
@@ -92,6 +93,49 @@ TEST_F(SceneViews, FilmsALaunchFileAndATake) {
             kSuccess)
       << error_;
   EXPECT_EQ(probe(path("take.webm")), "vp9,320,180,50/1,20");
+}
+
+TEST_F(SceneViews, SaysThatTheDiskHasNoRoomForTheEndOfAFilm) {
+  if (!has_program("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  for (const char* name : {"small.mp4", "small.webm"}) {
+    int code = 0;
+    {
+      const test::SmallDisk disk(2048);
+      code = run({"film", kLaunch, "--duration", "400ms", "--size", "320x180", "-o", path(name)});
+    }
+    EXPECT_EQ(code, kFailure) << name;
+    EXPECT_THAT(error_, HasSubstr("cannot write " + path(name) + " whole")) << name;
+    EXPECT_EQ(out_, "") << name;
+  }
+}
+
+TEST_F(SceneViews, FilmsEveryFrameOfATake) {
+  std::size_t frames = 0;
+  double rate_hz = 0.0;
+  const mcap::Reader take(kTake);
+  mcap::MessageCursor cursor =
+      take.messages({.topics = {msg::TOPIC_DESCRIPTION, msg::TOPIC_FRAME}});
+  for (mcap::Message message; cursor.next(message);) {
+    msg::SceneDescription description;
+    if (take.channels().at(message.channel_id).topic == msg::TOPIC_FRAME) {
+      ++frames;
+    } else {
+      ASSERT_TRUE(dds::decode(message.data, description));
+      rate_hz = description.frame_rate_hz();
+    }
+  }
+  ASSERT_EQ(run({"film", kTake, "--fps", std::to_string(rate_hz), "--size", "160x90", "-o",
+                 path("all/")}),
+            kSuccess)
+      << error_;
+  EXPECT_THAT(out_, HasSubstr(": " + std::to_string(frames) + " images"));
+}
+
+TEST_F(SceneViews, SaysThatAFilmIsShorterThanItsDuration) {
+  EXPECT_EQ(run({"film", kTake, "--duration", "3600s", "--fps", "5", "--size", "160x90", "-o",
+                 path("short/")}),
+            kFailure);
+  EXPECT_THAT(error_, HasSubstr("the scene ended after 5 images of 18000; what was drawn is kept"));
 }
 
 TEST_F(SceneViews, FilmsIntoAFolderWithTheSameBytesEachTime) {

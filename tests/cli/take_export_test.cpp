@@ -12,7 +12,9 @@
 #include <unistd.h>
 
 #include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/export/export.h"
+#include "cli/verbs.h"
 #include "idl/control.h"
 #include "idl/gesture.h"
 #include "idl/inputs.h"
@@ -21,6 +23,7 @@
 #include "node/dds/payload.h"
 #include "record_node/mcap/reader.h"
 #include "record_node/mcap/writer.h"
+#include "tests/cli/captured_run.h"
 
 namespace cordis::cli {
 namespace {
@@ -59,6 +62,7 @@ class TakeExport : public testing::Test {
     scene.space(1);
     scene.step_rate_hz(1000.0);
     scene.gesture_rate_hz(1000.0);
+    scene.frame_rate_hz(25.0);
     msg::SignalDescription signal;
     signal.name("bridge");
     signal.unit("N");
@@ -118,6 +122,16 @@ class TakeExport : public testing::Test {
     put(msg::TOPIC_SOUND, "SceneSound", sound);
   }
 
+  void put_frame(std::uint64_t step) {
+    msg::SceneFrame frame;
+    frame.epoch(5);
+    frame.version(1);
+    frame.frame(step / 40);
+    frame.step(step);
+    frame.simulated_s(1e-3 * static_cast<double>(step));
+    put(msg::TOPIC_FRAME, "SceneFrame", frame);
+  }
+
   /// One sample of the port, which takes effect in a turn of its own.
   /// @param lost  inputs that sim_node had no room for
   void put_input(std::uint64_t number, double position, std::uint64_t lost = 0) {
@@ -165,6 +179,30 @@ class TakeExport : public testing::Test {
   std::uint64_t batch_ = 0;
   std::uint64_t time_ = 0;
 };
+
+TEST_F(TakeExport, PlotsEveryRowOfATakeWhereverItsFramesBegin) {
+  for (const std::uint64_t first_frame : {0, 40}) {  // 0: no frame at all
+    const std::string name = "plot" + std::to_string(first_frame) + ".mcap";
+    begin(name);
+    put_values(1, std::vector<double>(100, 1.0));
+    for (std::uint64_t step = first_frame; step > 0 && step <= 80; step += 40) put_frame(step);
+    ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+    const auto plot = [&](std::vector<std::string> words) {
+      words.insert(words.begin(), {"plot", path(name), "-o", path("plot.svg")});
+      CommandLine line("cordis", "", "0");
+      add_verbs(line);
+      std::string out;
+      std::string error;
+      EXPECT_EQ(run_captured(line, words, out, error), kSuccess) << error;
+      return out;
+    };
+
+    EXPECT_THAT(plot({}), testing::HasSubstr(": 100 rows of 1 signal"));
+    EXPECT_THAT(plot({"--from", "0s"}), testing::HasSubstr(": 100 rows of 1 signal"));
+    EXPECT_THAT(plot({"--from", "0s", "--duration", "30ms"}),
+                testing::HasSubstr(": 30 rows of 1 signal"));
+  }
+}
 
 TEST_F(TakeExport, CountsEachLossInOneSentence) {
   const mcap::Reader take(path("take.mcap"));
