@@ -4,6 +4,8 @@
 #include <arpa/inet.h>
 
 #include "node/config/mapping_reader.h"
+#include "node/config/regular_file.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::viz {
 namespace {
@@ -25,6 +27,7 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
   for (const config::Value& scene : reader.optional_sequence("scenes").items()) {
     if (scene.kind() == config::Value::Kind::kScalar && !scene.text().empty()) {
       viz.rights.scenes.push_back(scene.text());
+      viz.scene_places.push_back(scene.place());
     } else {
       problems.error(scene.place(), "scenes lists paths of scenes, got " + scene.described());
     }
@@ -38,6 +41,21 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
   }
   reader.finish();
   return viz;
+}
+
+void check_scene_files(const config::Launch& launch, const VizConfig& viz,
+                       config::Problems& problems) {
+  for (std::size_t i = 0; i < viz.rights.scenes.size(); ++i) {
+    const std::string path = launch.resolve(viz.rights.scenes[i]).string();
+    const std::string reason = config::read_regular_file(path, config::kMaxFileBytes).reason;
+    if (reason.empty()) continue;
+    const std::string text = "cannot read '" + path + "': " + reason;
+    if (launch.network) {
+      problems.warning(viz.scene_places[i], text, "sim_node loads it, on its own host");
+    } else {
+      problems.error(viz.scene_places[i], text);
+    }
+  }
 }
 
 }  // namespace cordis::viz

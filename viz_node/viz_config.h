@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "node/config/launch.h"
 #include "node/config/problem.h"
@@ -16,10 +17,16 @@ struct VizConfig {
   int port = 8080;                    ///< 0 takes any free port
   double rate_hz = 25.0;              ///< most frames per second that pages get
   PageRights rights;                  ///< rights of pages
-  bool foxglove = false;              ///< Foxglove may read the topics of the session
+  std::vector<config::Place> scene_places;  ///< where each of rights.scenes is written
+  bool foxglove = false;                    ///< Foxglove may read the topics of the session
 };
 
 /// Reads the section, in which every key is optional. What is wrong goes to `problems`.
 VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems);
+
+/// A problem for each of `scenes` whose file cannot be read. It is a warning where the launch file
+/// has a `network`: sim_node loads the scene, maybe on another host.
+void check_scene_files(const config::Launch& launch, const VizConfig& viz,
+                       config::Problems& problems);
 
 }  // namespace cordis::viz

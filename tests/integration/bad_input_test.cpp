@@ -82,6 +82,19 @@ TEST(BadInput, AnUnknownFileIsReportedByName) {
   EXPECT_NE(launcher.output().find("scene.yaml"), std::string::npos) << launcher.output();
 }
 
+TEST(BadInput, AMissingSceneOfThePageIsReportedWhereItIsListed) {
+  const std::string view = "  view: {node: viz_node, port: 0, scenes: [scene.yaml, none.yaml]}\n";
+  LiveSession session("lockstep", kSimAndKey + view);
+  session.add_file("scene.yaml", wall_scene(1));
+  session.add_file("key.yaml", steady_key(0, 0));
+  ChildProcess& launcher = session.start_launcher();
+  const Outcome outcome{launcher.wait(kPatience), launcher.output()};
+
+  expect_same_judgement(outcome, session.launch_file(), {});
+  expect_bad_file(outcome, ":" + std::to_string(view.find("none.yaml") + 1) + ": error:",
+                  "none.yaml': No such file");
+}
+
 TEST(BadInput, ADomainOutOfRangeIsRefused) {
   expect_bad_file(run(wall_scene(1), steady_key(0, 0), {"domain=233"}), "domain", "101");
 }

@@ -49,6 +49,26 @@ foxglove: true
   EXPECT_EQ(viz.rights.scenes, (std::vector<std::string>{"a.yaml", "b.yaml"}));
 }
 
+TEST(VizConfig, WarnsOfAMissingSceneWhereSimNodeMayRunOnAnotherHost) {
+  for (const bool has_network : {false, true}) {
+    config::Problems problems;
+    config::Launch launch;
+    launch.directory = CORDIS_SOURCE_DIR "/launch_configs/scenes";
+    if (has_network) launch.network.emplace();
+    const VizConfig viz = read("scenes: [membrane.yaml, none.yaml]", problems);
+
+    check_scene_files(launch, viz, problems);
+
+    ASSERT_EQ(problems.all().size(), 1u);
+    const config::Problem& problem = problems.all().front();
+    EXPECT_EQ(problem.place.line, 1);
+    EXPECT_EQ(problem.place.column, 25);
+    EXPECT_NE(problem.message.find("/none.yaml': No such file"), std::string::npos)
+        << problem.message;
+    EXPECT_EQ(problems.has_errors(), !has_network);
+  }
+}
+
 TEST(VizConfig, FindsAllThatIsWrongAtOnceAndWhere) {
   config::Problems problems;
   read(R"(address: lab
