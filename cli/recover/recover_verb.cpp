@@ -3,12 +3,16 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/exit_code.h"
+#include "cli/table/output_file.h"
 #include "cli/take_file.h"
 #include "node/config/count_text.h"
 #include "node/terminal_text.h"
@@ -42,6 +46,31 @@ std::string recovery_text(const mcap::Recovery& recovery) {
   return text;
 }
 
+void copy_bytes(std::ifstream& from, OutputFile& to) {
+  std::vector<char> block(std::size_t{1} << 20);
+  while (from.read(block.data(), static_cast<std::streamsize>(block.size())) || from.gcount() > 0)
+    to.write({block.data(), static_cast<std::size_t>(from.gcount())});
+  to.flush();
+}
+
+/// @throws UsageError when there cannot be a copy, std::runtime_error when it cannot be completed,
+/// as on a full disk; then nothing is left of it.
+void copy_take(const std::string& take, const std::filesystem::path& copy) {
+  std::error_code error;
+  if (std::filesystem::exists(copy, error))
+    throw UsageError("cannot copy to " + copy.string() + ": it exists");
+  std::ifstream from(take, std::ios::binary);
+  if (!from) throw UsageError("cannot read " + take);
+  OutputFile to(copy.string());
+  try {
+    copy_bytes(from, to);
+    if (from.bad()) throw std::runtime_error("cannot read " + take + " to its end");
+  } catch (const std::runtime_error&) {
+    std::filesystem::remove(copy, error);
+    throw;
+  }
+}
+
 /// Removes a copy that cannot be recovered.
 mcap::Recovery recover_or_leave_nothing(const std::filesystem::path& take, bool is_copy) {
   try {
@@ -58,9 +87,8 @@ int run(const RecoverWords& words) {
   if (!std::filesystem::is_regular_file(take, error))
     throw UsageError("there is no file " + words.take);
   if (!words.output.empty()) {
-    if (!std::filesystem::copy_file(take, words.output, error))
-      throw UsageError("cannot copy to " + words.output + ": " + error.message());
-    take = words.output;
+    take = words.output == "-" ? "./-" : words.output;
+    copy_take(words.take, take);
   }
   const mcap::Recovery recovery = recover_or_leave_nothing(take, /*is_copy=*/!words.output.empty());
   node::print_text(stdout, recovery_text(recovery));
@@ -77,8 +105,8 @@ void add_recover_verb(CommandLine& line) {
   verb.examples(
       "It keeps every whole chunk, cuts the torn end, lets readers skip what is damaged between\n"
       "chunks, and writes missing indexes and the summary again. A whole take stays as it is.\n"
-      "Exit code: 0 nothing in the file was lost, 3 something was, 1 it cannot be recovered,\n"
-      "2 bad command line.\n\n"
+      "Exit code: 0 nothing in the file was lost, 3 something was, 1 it cannot be recovered\n"
+      "or the disk is full, 2 bad command line.\n\n"
       "Examples:\n"
       "  cordis recover take.mcap\n"
       "  cordis recover take.mcap --output repaired.mcap\n");

@@ -56,7 +56,22 @@ void SignalRows::begin(const msg::SceneDescription& description) {
     append_text(line_, header_of({names_[i], units_[i]}));
   }
   line_ += '\n';
-  table_file_->write(line_);
+  write_line();
+}
+
+void SignalRows::write_line() {
+  if (!table_file_) return;
+  try {
+    table_file_->write(line_);
+  } catch (const std::runtime_error& error) {
+    lose_table(error.what());
+  }
+}
+
+void SignalRows::lose_table(const std::string& reason) {
+  failure_ = reason;
+  table_path_.clear();
+  table_file_.reset();
 }
 
 bool SignalRows::add(const msg::SceneSignals& batch) {
@@ -84,7 +99,7 @@ bool SignalRows::add(const msg::SceneSignals& batch) {
       append_number(line_, value);
     }
     line_ += '\n';
-    if (table_file_) table_file_->write(line_);
+    write_line();
   }
   return true;
 }
@@ -109,8 +124,17 @@ void SignalRows::write_summary() {
 }
 
 void SignalRows::finish() {
-  if (table_file_) table_file_->flush();
-  if (summary_file_) write_summary();
+  try {
+    if (table_file_) table_file_->flush();
+  } catch (const std::runtime_error& error) {
+    lose_table(error.what());
+  }
+  try {
+    if (summary_file_) write_summary();
+  } catch (const std::runtime_error& error) {
+    failure_ += (failure_.empty() ? "" : "; ") + std::string(error.what());
+  }
+  if (!failure_.empty()) throw std::runtime_error(failure_);
 }
 
 std::string SignalRows::text() const {

@@ -28,8 +28,9 @@ class SignalRows {
   void begin(const msg::SceneDescription& description);
   /// Adds the rows of a batch of that scene.
   /// @return false when the batch belongs to another scene, whose description may come behind it
-  /// @throws std::runtime_error when the file takes no more.
   bool add(const msg::SceneSignals& batch);
+  /// Completes the files; the summary also of a table that took no more.
+  /// @throws std::runtime_error when a file took no more
   void finish();
 
   /// What a person has to know at the end, in one sentence.
@@ -39,8 +40,11 @@ class SignalRows {
 
  private:
   void write_summary();
+  void write_line();
+  void lose_table(const std::string& reason);
 
   std::string table_path_;
+  std::string failure_;  // why a file is not whole
   std::optional<OutputFile> table_file_;
   std::optional<OutputFile> summary_file_;
   std::string line_;

@@ -1,7 +1,15 @@
 // tests/cli/signal_log_test.cpp -- rows of signals, and what of them is lost.
 #include "cli/run/signal_log.h"
 
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "idl/scene.h"
 
@@ -43,6 +51,38 @@ TEST(SignalRows, ADescriptionThatComesAgainBeginsNothing) {
   EXPECT_EQ(table.row_count(), 200u);
   EXPECT_EQ(table.lost_rows(), 0u);
   EXPECT_EQ(table.text(), "signals: 200 rows");
+}
+
+TEST(SignalRows, TheSummaryIsCompleteWhereTheTableHasNoRoom) {
+  const std::string file = testing::TempDir() + "full_table." + std::to_string(getpid()) + ".json";
+  SignalRows table("/dev/full", file);
+  table.begin(described(1));
+  for (std::uint64_t batch = 0; batch < 100; ++batch) table.add(rows(1, 8 + 800 * batch, 100));
+  std::string failure;
+  try {
+    table.finish();
+  } catch (const std::runtime_error& error) {
+    failure = error.what();
+  }
+
+  EXPECT_THAT(failure, testing::HasSubstr("cannot write '/dev/full'"));
+  EXPECT_EQ(table.text(), "signals: 10000 rows");
+  std::ifstream summary(file);
+  EXPECT_EQ(nlohmann::json::parse(summary)["rows"], 10000);
+  std::filesystem::remove(file);
+}
+
+TEST(SignalRows, ASummaryThatHasNoRoomIsSaidToo) {
+  SignalRows table("/dev/full", "/dev/full");
+  table.begin(described(1));
+  table.add(rows(1, 8, 100));
+  try {
+    table.finish();
+    ADD_FAILURE() << "both files are full";
+  } catch (const std::runtime_error& error) {
+    const std::string said = error.what();
+    EXPECT_NE(said.find("'/dev/full'"), said.rfind("'/dev/full'")) << said;
+  }
 }
 
 TEST(SignalRows, AnotherVersionBeginsAtStepZero) {

@@ -8,6 +8,7 @@
 #include "tests/cli/captured_run.h"
 #include "tests/mcap/random_take.h"
 #include "tests/mcap/take_folder.h"
+#include "tests/support/small_disk.h"
 
 namespace cordis::cli {
 namespace {
@@ -213,6 +214,19 @@ TEST_F(TakeVerbs, EchoEndsAfterItsCountAndReadsATornTake) {
   EXPECT_NE(torn.error.find("is damaged"), std::string::npos) << torn.error;
   EXPECT_GT(lines(torn), 0);
   EXPECT_LT(lines(torn), 40);
+}
+
+TEST_F(TakeVerbs, RecoverLeavesNothingOnAFullDiskAndSaysSo) {
+  tear();
+  Answer answer;
+  {
+    const test::SmallDisk disk(std::filesystem::file_size(file_) / 2);
+    answer = cordis({"recover", file_, "-o", output_});
+  }
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_EQ(answer.error, "cordis recover: cannot write '" + output_ + "': File too large\n");
+  EXPECT_FALSE(std::filesystem::exists(output_));
+  EXPECT_EQ(cordis({"recover", file_, "-o", file_}).code, 2);
 }
 
 TEST_F(TakeVerbs, MistakesEndInOneSentenceAndChangeNothing) {
