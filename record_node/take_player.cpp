@@ -473,6 +473,8 @@ struct TakePlayer::Impl {
                                      kSlowestRate, kFastestRate, argument)};
         change([&] { rate = *number; });
         return {true, fmt::format("plays {:g} times as fast as it was recorded", *number)};
+      case msg::VERB_GET:
+        return {false, "a take is played: it has no parameters to ask for"};
       default:
         return {false, "a take is played: '" + node::word_of(command.verb()) +
                            "' would change nothing of it"};

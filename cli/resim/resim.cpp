@@ -98,6 +98,7 @@ ResimResult resimulate(const ResimOptions& options) {
   do {
     result.samples += batch.sample().size();
     result.commands += batch.scene().size();
+    result.scenes += batch.scene().size();
     for (const msg::InputEvent& event : batch.event()) {
       if (sim::verb_of(event.kind())) ++result.commands;
     }
@@ -130,9 +131,11 @@ ResimResult resimulate(const ResimOptions& options) {
 std::string text_of(const ResimResult& result, const ResimOptions& options) {
   const FrameFindings& findings = result.findings;
   if (!result.has_begun) return options.take + " cannot be computed again: " + result.loss + "\n";
+  const std::string last =
+      result.scenes > 1 ? config::count_text(result.scenes, "scene") + ", the last one " : "";
   std::string text = fmt::format(
-      "{}: '{}', {:.6g} s in {}, {}, {}, recorded with Cordis {}, integrator {}\n", options.take,
-      result.scene, result.played_s, pace_text(result.clock),
+      "{}: {}'{}', {:.6g} s in {}, {}, {}, recorded with Cordis {}, integrator {}\n", options.take,
+      last, result.scene, result.played_s, pace_text(result.clock),
       config::count_text(result.samples, "sample"), config::count_text(result.commands, "command"),
       result.engine_version, result.integrator);
   if (result.by == FrameCheck::By::kPosition) {

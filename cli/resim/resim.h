@@ -26,7 +26,8 @@ struct ResimResult {
   FrameCheck::By by = FrameCheck::By::kHash;
   FrameFindings findings;
   std::vector<FrameCheck::Computed> computed;
-  std::string scene;  ///< name of the last one
+  std::string scene;       ///< name of the last one
+  std::size_t scenes = 0;  ///< scenes of the take: the first one and those that were loaded
   msg::InputClock clock = msg::PACE_REALTIME;
   std::string engine_version;  ///< engine that wrote the take
   std::uint32_t hash_version = 0;

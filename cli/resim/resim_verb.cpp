@@ -75,11 +75,10 @@ int run(ResimWords& words) {
     }
     return exit_code_of(result, words.expects);
   } catch (const mcap::FileError& error) {
-    node::print_text(stderr, std::string(error.what()) + "\n");
+    throw UsageError(error.what());
   } catch (const std::invalid_argument& error) {
-    node::print_text(stderr, std::string(error.what()) + "\n");
+    throw UsageError(error.what());
   }
-  return kBadInput;
 }
 
 }  // namespace

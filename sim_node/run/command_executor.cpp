@@ -66,6 +66,9 @@ node::Answer CommandExecutor::answer_of(const PreparedRequest& prepared) {
   const std::string warnings = prepared.warnings.empty() ? "" : "\n" + prepared.warnings;
   switch (request.kind) {
     case Request::Kind::kPause:
+      if (request.steps_dropped > 0)
+        return {true, "stopped" + at_step(request) + ", with " +
+                          config::count_text(request.steps_dropped, "single step") + " to go"};
       if (request.was_paused) return {true, "was paused already" + at_step(request)};
       break;
     case Request::Kind::kResume:

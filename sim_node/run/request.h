@@ -38,9 +38,10 @@ struct Request {
   bool changes_scene() const noexcept { return kind == Kind::kRestart || kind == Kind::kExchange; }
 
   // What the loop has to say about it.
-  std::uint64_t step = 0;   ///< steps done when it was executed, in the scene played then
-  bool was_paused = false;  ///< before
-  bool done = true;         ///< false: kExchange found that the scene does not fit
+  std::uint64_t step = 0;           ///< steps done when it was executed, in the scene played then
+  bool was_paused = false;          ///< before
+  std::uint64_t steps_dropped = 0;  ///< kPause: single steps that were still to be done
+  bool done = true;                 ///< false: kExchange found that the scene does not fit
 };
 
 /// Room for one request on its way from one thread to the loop.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "node/config/mapping_reader.h"
+#include "node/control_verbs.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/engine/description/integrator_kind.h"
 #include "sim_node/run/input_kind.h"
@@ -224,7 +225,16 @@ void Resimulation::apply(const msg::InputSample& sample) {
 
 void Resimulation::apply(const msg::InputEvent& event) {
   if (const std::optional<msg::ControlVerb> verb = verb_of(event.kind())) {
-    execute(maker_->prepare(read_command(*verb, event.argument()), {}));
+    try {
+      execute(maker_->prepare(read_command(*verb, event.argument()), {}));
+    } catch (const std::invalid_argument& refusal) {
+      if (change_.is_none()) throw;
+      const std::string model =
+          change_.scene_file.empty() ? "the changed model" : change_.scene_file;
+      throw std::invalid_argument("'" + node::word_of(*verb) + " " + event.argument() +
+                                  "' of the take cannot be repeated in " + model + ": " +
+                                  refusal.what());
+    }
     return;
   }
   switch (event.kind()) {

@@ -12,6 +12,7 @@ Runner::Runner(std::unique_ptr<LoadedScene> scene, bool devices_wait) noexcept
 void Runner::execute(Request& request) noexcept {
   request.step = simulation().world().step_count();
   request.was_paused = paused_;
+  request.steps_dropped = request.kind == Request::Kind::kPause ? steps_left_ : 0;
   switch (request.kind) {
     case Request::Kind::kPause:
       paused_ = true;

@@ -104,7 +104,8 @@ TEST_F(Ask, SaysWhichWordIsWrong) {
   ends("cordis info " + name_ + " nothing", 1, "no process writes 'nothing'");
   ends("cordis hz " + name_ + " nothing --duration 200ms", 1,
        "no message has come on 'nothing'; `cordis info " + name_ + "` lists the topics");
-  ends("cordis get " + name_ + " finger.stiffness_n_per_m", 2, "a take is played");
+  ends("cordis get " + name_ + " finger.stiffness_n_per_m", 2,
+       "a take is played: it has no parameters to ask for");
   ends("cordis echo", 2, "which session?");
   ends("cordis echo " + name_ + " -n 0", 2, "-n must be a whole number");
   ends("cordis info " + name_ + " --json", 2, "--json is for takes");

@@ -493,6 +493,41 @@ matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}
   }
 }
 
+TEST(Resim, SaysWhichCommandOfTheTakeAnotherSceneCannotRepeat) {
+  const mcap::TakeFolder folder;
+  const std::string scene = (folder / "bare.yaml").string();
+  std::ofstream(scene) << R"(cordis: 1
+name: bare
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 1000}
+matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}
+)";
+  ResimOptions options;
+  options.take = kGolden + "commands.mcap";
+  options.scene_file = scene;
+  try {
+    resimulate(options);
+    FAIL() << "the scene has no wall to set";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "'set {'wall.stiffness_n_per_m': 210}' of the take cannot "
+              "be repeated in " +
+                  scene + ": no liaison and no links are named 'wall'");
+  }
+}
+
+TEST(Resim, SaysHowManyScenesATakeHas) {
+  ResimOptions options;
+  options.take = kGolden + "commands.mcap";
+  const std::string several = text_of(resimulate(options), options);
+  EXPECT_NE(several.find("commands.mcap: 3 scenes, the last one 'wall', 3.837 s in realtime"),
+            std::string::npos)
+      << several;
+  options.take = kGolden + "realtime_key.mcap";
+  const std::string one = text_of(resimulate(options), options);
+  EXPECT_NE(one.find("realtime_key.mcap: '"), std::string::npos) << one;
+}
+
 /// The hand of a take of lockstep, in the same scene: driver, guards and exchange give the same bits.
 TEST(Resim, AHandThatIsReplayedGivesTheStateOfTheTake) {
   const mcap::TakeFolder folder;
@@ -521,6 +556,13 @@ nodes:
 TEST(Resim, RefusesWhatIsNoTake) {
   EXPECT_ANY_THROW(resim_of(kGolden + "hashes.yaml"));
   EXPECT_ANY_THROW(resim_of(kGolden + "absent.mcap"));
+  CommandLine line("cordis", "", "0");
+  add_verbs(line);
+  std::string out;
+  std::string error;
+  EXPECT_EQ(run_captured(line, {"resim", kGolden + "hashes.yaml"}, out, error), 2);
+  EXPECT_EQ(error, "cordis resim: " + kGolden +
+                       "hashes.yaml is not an MCAP file (see cordis resim --help)\n");
 }
 
 }  // namespace

@@ -117,6 +117,14 @@ TEST_F(CommandExecutorTest, AnswersWhenTheSingleStepsAreDone) {
   EXPECT_EQ(runner_.simulation().world().step_count(), 10u);
 }
 
+TEST_F(CommandExecutorTest, SaysThatAPauseEndsSingleSteps) {
+  EXPECT_NE(execute(msg::VERB_STEP, "1000000000").text.find(" begun at step "), std::string::npos);
+  const node::Answer paused = execute(msg::VERB_PAUSE);
+  EXPECT_EQ(paused.text.find("stopped at step "), 0u) << paused.text;
+  EXPECT_NE(paused.text.find(" single steps to go"), std::string::npos) << paused.text;
+  EXPECT_EQ(execute(msg::VERB_PAUSE).text.find("was paused already at step "), 0u);
+}
+
 TEST_F(CommandExecutorTest, SaysEveryParameterOfTheSceneWhenNoneIsNamed) {
   execute(msg::VERB_SET, "{spring.stiffness_n_per_m: 101}");
   const node::Answer answer = execute(msg::VERB_GET);
