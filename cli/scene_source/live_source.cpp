@@ -64,17 +64,19 @@ bool LiveSource::next(msg::SceneFrame& frame) {
     frame = *std::exchange(first_, std::nullopt);
     return true;
   }
-  while (wait_for(*frames_, frame)) {
+  while (!is_over_ && wait_for(*frames_, frame)) {
     if (!is_of(frame, description_)) {
       if (frame.epoch() == description_.epoch() && frame.version() < description_.version())
         continue;  // of the scene before
       notes_.push_back("the session plays another scene now, or its scene began again");
+      is_over_ = true;
       return false;
     }
     if (viz::fault_of(frame, description_).empty()) return true;
   }
-  if (!node::stop_requested())
+  if (!is_over_ && !node::stop_requested())
     notes_.push_back("session '" + session_ + "' sends nothing any more");
+  is_over_ = true;
   return false;
 }
 

@@ -42,6 +42,7 @@ class LiveSource final : public SceneSource {
   std::unique_ptr<dds::Reader<msg::SceneSignals>> signals_;
   msg::SceneDescription description_;
   std::optional<msg::SceneFrame> first_;
+  bool is_over_ = false;  // no frame comes any more
   double first_s_ = 0.0;
   FramePicker picker_;
   std::vector<std::string> notes_;
