@@ -48,6 +48,13 @@ void DeviceLink::start() {
   listener_ = std::thread([this] { listen(); });
 }
 
+bool DeviceLink::has_reader_of(const std::string& node, const scene::Scene& scene) const {
+  return std::ranges::all_of(scene.ports, [&](const scene::Port& port) {
+    return port.role == Role::kMass ? force_writer_.has_reader_of(node)
+                                    : position_writer_.has_reader_of(node);
+  });
+}
+
 void DeviceLink::listen() {
   msg::DeviceDescription description;
   while (!ending_) {

@@ -42,6 +42,8 @@ class DeviceLink {
 
   /// Begins to receive descriptions.
   void start();
+  /// True if a node reads all topics on which the devices of a scene are answered.
+  bool has_reader_of(const std::string& node, const scene::Scene& scene) const;
 
   /// The scene that devices must support from now on; any thread.
   void play(const scene::Scene& scene);

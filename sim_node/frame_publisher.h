@@ -38,6 +38,11 @@ class FramePublisher {
   bool wait_for_signal_reader(const std::string& node, bool is_paced,
                               std::chrono::milliseconds at_most);
 
+  /// True if a node reads scene/signals.
+  bool has_signal_reader(const std::string& node) const {
+    return signal_writer_.has_reader_of(node);
+  }
+
   /// Loop: a frame is due. @return false when it was left out because the thread is still busy.
   /// The store must live until is_busy() is false again.
   bool submit(FrameStore& store, const engine::World& world, double simulated_s,

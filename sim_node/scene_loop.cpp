@@ -17,7 +17,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kLongestReaderWait = 5s;  // for a reader of signals
+constexpr auto kLongestReaderWait = 5s;  // for a reader of signals, or a recorder
+constexpr auto kLookForRecorder = 2ms;
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene is paused
 constexpr std::uint64_t kRestsPerFrame = 8;
 
@@ -46,6 +47,24 @@ void SceneLoop::wait_for_signal_reader(const std::string& node) {
     return;
   spdlog::warn("{} does not read {} after {} s: it gets no first rows", node, msg::TOPIC_SIGNALS,
                kLongestReaderWait.count());
+}
+
+bool SceneLoop::is_recorded_by(const std::string& node) const {
+  const scene::Scene& scene = simulation().scene();
+  const bool has_signals = scene.signals.count() > 0;
+  return devices_.has_reader_of(node, scene) && (!has_signals || frames_.has_signal_reader(node));
+}
+
+void SceneLoop::wait_for_recorder(const std::string& node) {
+  const std::string reader = node + "/topics";  // the participant of a recorder that reads
+  const auto end = std::chrono::steady_clock::now() + kLongestReaderWait;
+  while (!is_recorded_by(reader)) {
+    if (node::wait_for_stop(kLookForRecorder)) return;
+    if (std::chrono::steady_clock::now() < end) continue;
+    spdlog::warn("{} does not record after {} s: it gets no first answers and signals", node,
+                 kLongestReaderWait.count());
+    return;
+  }
 }
 
 bool SceneLoop::finished() const noexcept {

@@ -32,6 +32,9 @@ class SceneLoop {
 
   /// Before the first turn: FramePublisher::wait_for_signal_reader(), at most 5 s.
   void wait_for_signal_reader(const std::string& node);
+  /// Before the first turn: waits until a node reads the answers to devices and the signals that
+  /// this scene has, at most 5 s.
+  void wait_for_recorder(const std::string& node);
 
   /// True when a stop is asked for, the scene diverged, or the duration is over.
   bool finished() const noexcept;
@@ -71,6 +74,7 @@ class SceneLoop {
   std::uint64_t lost_events() const noexcept { return frames_.lost_events(); }
 
  private:
+  bool is_recorded_by(const std::string& node) const;
   void submit_frame();
   void report_partners(const PartnersSeen& seen);
   void watch_bounds(bool is_frame);

@@ -29,6 +29,7 @@ void report_time_scale(msg::NodeStatus& status, double time_scale) {
 Session::Session(const node::NodeStart& start, SimConfig config)
     : start_(start),
       signals_for_(config.signals_for),
+      recorded_by_(config.recorded_by),
       threads_(config.threads),
       participant_(start.config()),
       loop_participant_(start.join_for_force_loop()),
@@ -66,6 +67,7 @@ int Session::run() {
   control_.start();
 
   if (!signals_for_.empty()) loop_.wait_for_signal_reader(signals_for_);
+  for (const std::string& recorder : recorded_by_) loop_.wait_for_recorder(recorder);
   snapshot_.begin();
   run_loop();
   loop_.show_rest();

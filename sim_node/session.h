@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "node/dds/participant.h"
 #include "node/node_main.h"
@@ -29,9 +30,10 @@ class Session {
   void run_loop();
 
   const node::NodeStart& start_;
-  const std::string signals_for_;      // the node that gets every row of signals; empty: none
-  const std::size_t threads_;          // as of SimConfig
-  dds::Participant participant_;       // for all but the force loop
+  const std::string signals_for_;  // the node that gets every row of signals; empty: none
+  const std::vector<std::string> recorded_by_;  // nodes that get all answers and signals
+  const std::size_t threads_;                   // as of SimConfig
+  dds::Participant participant_;                // for all but the force loop
   dds::Participant loop_participant_;  // for the force loop, which waits for no other thread
   DeviceLink devices_;
   StatusSnapshot snapshot_;

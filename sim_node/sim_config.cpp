@@ -56,6 +56,12 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
   section.delay_quantile =
       reader.optional_number("delay_quantile", 0.95, config::Range::between(0.5, 1.0));
   section.signals_for = reader.optional_text("signals_for", "");
+  for (const config::Value& recorder : reader.optional_sequence("recorded_by").items()) {
+    section.recorded_by.push_back(recorder.text());
+    if (recorder.text().empty())
+      reader.error_at("recorded_by",
+                      "recorded_by must be a list of names, got " + recorder.described());
+  }
   section.threads = static_cast<std::size_t>(
       reader.optional_integer_or("threads", "auto", kFastest, 1, kMaxThreads));
   section.scene_place = reader.place_of("scene");
@@ -70,6 +76,7 @@ SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode
                 section.force,
                 section.delay_quantile,
                 section.signals_for,
+                section.recorded_by,
                 section.threads,
                 {},
                 {}};

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "node/config/launch.h"
 #include "sim_node/run/request_source.h"
@@ -24,6 +25,8 @@ struct SimSection {
   std::size_t threads = kFastest;  ///< `threads`: how many share a step
   /// `signals_for`: the node that gets every row of scene/signals; empty: none waits
   std::string signals_for;
+  /// `recorded_by`: record_nodes that get all answers and signals; empty: none waits
+  std::vector<std::string> recorded_by;
 };
 
 /// Reads the section alone, not the scene. What is wrong becomes a problem.
@@ -31,13 +34,14 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 
 /// What a sim_node runs.
 struct SimConfig {
-  double duration_s = 0.0;         ///< duration from the section
-  bool force = false;              ///< `force` of the section
-  double delay_quantile = 0.95;    ///< quantile from the section
-  std::string signals_for;         ///< `signals_for` of the section
-  std::size_t threads = kFastest;  ///< `threads` of the section
-  scene::Scene scene;              ///< what the file of the section says
-  SceneSource source;              ///< source of the scene
+  double duration_s = 0.0;               ///< duration from the section
+  bool force = false;                    ///< `force` of the section
+  double delay_quantile = 0.95;          ///< quantile from the section
+  std::string signals_for;               ///< `signals_for` of the section
+  std::vector<std::string> recorded_by;  ///< `recorded_by` of the section
+  std::size_t threads = kFastest;        ///< `threads` of the section
+  scene::Scene scene;                    ///< what the file of the section says
+  SceneSource source;                    ///< source of the scene
 };
 
 /// Reads the section and the scene, checks every port against the device files of the same launch,

@@ -62,6 +62,7 @@ class DirectChannel final : public device::GestureChannel {
   }
 
   const device::AxisValues& device_values() const noexcept { return values_; }
+  const device::AxisValues& answered_values() const noexcept { return answer_.value; }
 
   bool receive(GestureMessage& answer, std::chrono::nanoseconds) noexcept override {
     if (!has_answer_) return false;
@@ -107,6 +108,7 @@ class OfflineSession::SimulatedDevice {
 
   const device::DeviceConfig& config() const noexcept { return device_.config; }
   const device::AxisValues& device_values() const noexcept { return channel_.device_values(); }
+  const device::AxisValues& answered_values() const noexcept { return channel_.answered_values(); }
   device::PointerPort* pointer_port() noexcept { return device_.driver->pointer_port(); }
   void send_sample() noexcept { exchange_.send_sample(); }
   void read_forces(const engine::World& world) {
@@ -125,9 +127,9 @@ class OfflineSession::SimulatedDevice {
 };
 
 OfflineSession::OfflineSession(const std::string& file, const std::vector<std::string>& overrides) {
-  config::Problems problems;
+  config::Problems problems;  // which are found again when the file is read as what it is
   const config::Value root = config::load_file(file, problems);
-  problems.throw_if_any();
+  if (!root.exists()) problems.throw_if_any();
   if (config::is_launch_file(root)) {
     load_launch(file, overrides);
   } else if (overrides.empty()) {
@@ -240,6 +242,11 @@ double OfflineSession::device_value_on_axis(const scene::Port& port,
                                             std::size_t axis) const noexcept {
   const SimulatedDevice* device = device_of(port);
   return device == nullptr ? 0.0 : device->device_values()[port.axes[axis]];
+}
+
+double OfflineSession::answer_on_axis(const scene::Port& port, std::size_t axis) const noexcept {
+  const SimulatedDevice* device = device_of(port);
+  return device == nullptr ? 0.0 : device->answered_values()[port.axes[axis]];
 }
 
 bool OfflineSession::has_reached(double time_s) const noexcept {

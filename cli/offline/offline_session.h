@@ -61,6 +61,8 @@ class OfflineSession {
   engine::Vec3 device_value(const scene::Port& port) const;
   /// The number that its device gave for one of the axes of the port, 0 when none plays it.
   double device_value_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
+  /// The number that its device was answered for one of the axes of the port, 0 when none plays it.
+  double answer_on_axis(const scene::Port& port, std::size_t axis) const noexcept;
 
   /// What leads the hand of a device with the driver `pointer`; null for all others. Its keys are
   /// free unless the caller leads it.

@@ -7,7 +7,11 @@
 
 #include "cli/command_line.h"
 #include "cli/duration.h"
+#include "idl/topics.h"
 #include "node/config/nearest_word.h"
+#include "node/config/problem.h"
+#include "record_node/mcap/topic_glob.h"
+#include "record_node/record_config.h"
 
 namespace cordis::cli {
 namespace {
@@ -45,6 +49,28 @@ bool is_wanted(const std::string& name, const std::vector<std::string>& only) {
   return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
 }
 
+/// True if a record_node stores what a scene answers to devices, and its signals.
+bool records_answers(const config::LaunchNode& node) {
+  config::Problems reported_by_the_node;
+  const record::RecordSection section = record::read_record_section(node, reported_by_the_node);
+  const std::array topics{msg::TOPIC_FORCES, msg::TOPIC_POSITIONS, msg::TOPIC_SIGNALS};
+  return std::ranges::all_of(topics, [&](const std::string& topic) {
+    return mcap::matches_topic(topic, section.topics) &&
+           (section.excluded.empty() || !mcap::matches_topic(topic, section.excluded));
+  });
+}
+
+/// The recorders of a run without real time, for which its scene waits: "[record, other]".
+std::string recorders_of(const config::Launch& launch, const RunOptions& options) {
+  std::string names;
+  if (launch.clock == config::Clock::kRealtime) return names;
+  for (const config::LaunchNode& node : launch.nodes) {
+    if (node.program != "record_node" || !is_wanted(node.name, options.only)) continue;
+    if (records_answers(node)) names += (names.empty() ? "[" : ",") + node.name;
+  }
+  return names.empty() ? names : names + "]";
+}
+
 bool is_plain(char c) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
@@ -59,12 +85,15 @@ RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
   RunPlan plan;
   plan.wall_duration = options.duration;
   std::vector<std::string> words = options.overrides;
+  const std::string recorders = recorders_of(launch, options);
   for (const config::LaunchNode& node : launch.nodes) {
     if (!is_wanted(node.name, options.only)) continue;
     plan.nodes.push_back({node.name, node.program, node.required, node.respawn});
     const bool wants_signals = !options.signals_file.empty() || !options.summary_file.empty();
     if (wants_signals && node.program == "sim_node")
       words.push_back(node.name + ".signals_for=" + kLauncherNode);
+    if (!recorders.empty() && node.program == "sim_node")
+      words.push_back(node.name + ".recorded_by=" + recorders);
     if (options.duration && node.program == "sim_node" &&
         launch.clock != config::Clock::kRealtime) {
       words.push_back(node.name + ".duration_s=" + in_seconds(*options.duration));

@@ -46,7 +46,8 @@ struct RunPlan {
 
 /// Makes the plan. In a lockstep or asap session a duration is simulated time: it becomes a word
 /// for sim_node, which then ends by itself. Where signals are written,
-/// sim_node begins when this process reads them.
+/// sim_node begins when this process reads them. Without real time it begins when the recorders of
+/// the plan read what it sends.
 /// @param programs  folder of the executables
 /// @throws UsageError when `only` names a node that the launch does not have.
 RunPlan plan_run(const config::Launch& launch, const RunOptions& options,

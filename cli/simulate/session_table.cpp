@@ -52,7 +52,7 @@ void SessionTable::add_mats(const std::string& word) {
   }
 }
 
-const std::vector<double>& SessionTable::row() {
+const std::vector<double>& SessionTable::row(bool ends_tick) {
   const engine::World& world = session_.world();
   const scene::Scene& scene = session_.scene();
   double* value = row_.data();
@@ -62,10 +62,16 @@ const std::vector<double>& SessionTable::row() {
   for (const PortAxis& port_axis : port_axes_) {
     const scene::Port& port = *port_axis.port;
     const engine::Vec3& direction = port.directions[port_axis.axis];
-    *value++ = (sim::position_of(world, port) - port.rest).dot(direction);
     const bool is_mass = port.role == scene::Role::kMass;
-    *value++ = is_mass ? world.link_force(port.mat).dot(direction)
-                       : session_.device_value_on_axis(port, port_axis.axis);
+    const double sent = session_.device_value_on_axis(port, port_axis.axis);
+    if (ends_tick && session_.plays(port)) {  // what a take has
+      const double answered = session_.answer_on_axis(port, port_axis.axis);
+      *value++ = is_mass ? sent : answered;
+      *value++ = is_mass ? answered : sent;
+      continue;
+    }
+    *value++ = (sim::position_of(world, port) - port.rest).dot(direction);
+    *value++ = is_mass ? world.link_force(port.mat).dot(direction) : sent;
   }
   for (const std::uint32_t mat : mats_) {
     const engine::Vec3 position = shown_position(scene, world.position(mat));

@@ -23,8 +23,9 @@ class SessionTable {
 
   const std::vector<Column>& columns() const noexcept { return columns_; }
 
-  /// The values of now.
-  const std::vector<double>& row();
+  /// The values of now. @param ends_tick  a gesture period is over: of a device they are what it gave
+  /// and what it was answered, as a take has them; else what its MAT has within the period
+  const std::vector<double>& row(bool ends_tick);
 
  private:
   struct PortAxis {

@@ -61,11 +61,11 @@ class Recording {
   void take_step() {
     if (sound_ != nullptr) take_sound();
     if (!schedule_.is_by_tick() && schedule_.has_row(session_.world().step_count() - first_step_))
-      take_row();
+      take_row(/*ends_tick=*/false);
   }
   void take_tick() {
     take_events();
-    if (schedule_.is_by_tick()) take_row();
+    if (schedule_.is_by_tick()) take_row(/*ends_tick=*/true);
   }
   void take_events() {
     event_count_ += session_.events().size();
@@ -105,13 +105,15 @@ class Recording {
   void take_sound() {
     const scene::SignalReader& signals = session_.scene().signals;
     signals.read_by_step(session_.world(), by_step_.data());
-    for (std::size_t i = 0; i < sounds_.size(); ++i) sounds_[i] = by_step_[signals.sounds()[i]];
+    // scene/sound has 32 bits per value: the file of a take is the same.
+    for (std::size_t i = 0; i < sounds_.size(); ++i)
+      sounds_[i] = static_cast<float>(by_step_[signals.sounds()[i]]);
     sound_->write(sounds_);
   }
 
-  void take_row() {
+  void take_row(bool ends_tick) {
     if (tables_.empty() && !summary_) return;
-    const std::vector<double>& row = table_.row();
+    const std::vector<double>& row = table_.row(ends_tick);
     for (const auto& table : tables_) table->write(row);
     for (std::size_t i = 0; i < row.size(); ++i) summaries_[i].add(row[i]);
     ++row_count_;

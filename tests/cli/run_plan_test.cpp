@@ -1,9 +1,12 @@
 // tests/cli/run_plan_test.cpp
 #include "cli/run/run_plan.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "cli/command_line.h"
+#include "node/config/yaml_reader.h"
 
 namespace cordis::cli {
 namespace {
@@ -76,6 +79,34 @@ TEST(RunPlan, LeavesADurationOfSimulatedTimeToTheSimulation) {
     for (const PlannedNode& node : plan.nodes) {
       EXPECT_EQ(node.command.words.back(), "sim.duration_s=2.5") << node.name;
     }
+  }
+}
+
+config::LaunchNode recorder_named(const std::string& name, const std::string& text) {
+  config::LaunchNode node;
+  node.name = name;
+  node.program = "record_node";
+  config::Problems problems;
+  node.section = config::load_text(text, "l.yaml", problems);
+  return node;
+}
+
+TEST(RunPlan, LetsASceneWithoutRealTimeBeginWhenItsRecordersRead) {
+  for (const config::Clock clock :
+       {config::Clock::kLockstep, config::Clock::kAsap, config::Clock::kRealtime}) {
+    config::Launch launch = launch_of(clock);
+    launch.nodes.push_back(recorder_named("tape", "{out: a.mcap}"));
+    launch.nodes.push_back(recorder_named("frames", "{out: b.mcap, topics: scene/frame}"));
+    launch.nodes.push_back(recorder_named("no_answers", "{out: c.mcap, exclude: gesture/*}"));
+    launch.nodes.push_back(recorder_named("disk", "{out: d.mcap, topics: [scene/*, gesture/*]}"));
+
+    const Words words = plan_run(launch, {}, "/bin").nodes.back().command.words;
+    const bool waits = std::ranges::find(words, "sim.recorded_by=[tape,disk]") != words.end();
+    EXPECT_EQ(waits, clock != config::Clock::kRealtime);
+
+    RunOptions some;
+    some.only = {"sim", "left"};
+    EXPECT_EQ(plan_run(launch, some, "/bin").nodes.back().command.words.size(), 4u);
   }
 }
 

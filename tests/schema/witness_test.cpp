@@ -35,6 +35,7 @@ constexpr std::array kExceptions{
     Exception{"launch nodes.NAME.respawn", "the default is what a gallery wants"},
     Exception{"launch nodes.NAME.duration_s", "set by cordis run --duration"},
     Exception{"launch nodes.NAME.signals_for", "set by cordis run --signals"},
+    Exception{"launch nodes.NAME.recorded_by", "set by cordis run"},
     Exception{"launch nodes.NAME.force", "lets a scene run that surely diverges: none ships"},
     Exception{"launch nodes.NAME.delay_quantile", "of a host that is late more often"},
     Exception{"launch nodes.NAME.threads", "of scenes larger than any that ships"},
