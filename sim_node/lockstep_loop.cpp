@@ -59,10 +59,15 @@ void LockstepLoop::report_wait(const DeviceExchange& device) {
   waits_since_nsec_ = kWaitIsReported;
   const std::string alive = roster_.name_of(msg::KIND_DEVICE_NODE);
   if (!(alive.empty() ? absences_ : silences_).record(now)) return;
+  std::string port;  // the first of the device
+  for (const scene::Port& one : loop_.simulation().scene().ports) {
+    if (port.empty() && one.device_id == device.device_id()) port = one.name;
+  }
   const std::string who = alive.empty() ? "no device_node of the session is alive"
                                         : "device_node " + alive + " is alive, and sends no sample";
-  spdlog::warn("has been waiting for the device '{}' for {} s: {}", device.device(),
-               kLongWait / 1'000'000'000, who);
+  spdlog::warn(
+      "has been waiting for the device '{}' for {} s: {}; nothing moves until it plays port '{}'",
+      device.device(), kLongWait / 1'000'000'000, who, port);
 }
 
 }  // namespace cordis::sim

@@ -88,17 +88,30 @@ struct LaunchedDevice {
   std::optional<config::DeviceLimits> limits;
 };
 
+/// What comes of a port whose device no node plays.
+const char* result_of_absence(config::Clock clock) noexcept {
+  switch (clock) {
+    case config::Clock::kRealtime:
+      return "it stays at rest until one joins the session";
+    case config::Clock::kLockstep:
+      return "in lockstep `cordis run` waits, and nothing moves until one joins the session";
+    case config::Clock::kAsap:
+      return "it stays at rest, as an asap session has no devices";
+  }
+  return "";
+}
+
 /// Warns that no node plays the device of a port.
 void warn_of_absence(const config::Launch& launch, const std::vector<LaunchedDevice>& devices,
                      const scene::Port& port, PortProblems& problems) {
   std::vector<std::string> names;
   for (const LaunchedDevice& device : devices) names.push_back(device.plays);
   const std::string near = config::nearest_word(port.device, names);
-  problems.warning(
-      PortProblems::About::kAbsence, port.place,
-      "port '" + port.name + "' wants the device '" + port.device + "', and " + launch.file +
-          " has no device_node of that name: it stays at rest until one joins the session",
-      near.empty() ? "" : "did you mean '" + near + "'?");
+  problems.warning(PortProblems::About::kAbsence, port.place,
+                   "port '" + port.name + "' wants the device '" + port.device + "', and " +
+                       launch.file +
+                       " has no device_node of that name: " + result_of_absence(launch.clock),
+                   near.empty() ? "" : "did you mean '" + near + "'?");
 }
 
 void check_axes(const scene::Port& port, const config::DeviceLimits& limits,

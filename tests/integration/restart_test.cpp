@@ -131,7 +131,8 @@ TEST(Lockstep, WhoWaitsLongSaysForWhomAndWhetherAnybodyIsThereAndForgetsNobody) 
   ChildProcess& alone = sceneless.start("device_node", "keyboard");
 
   EXPECT_TRUE(sim.wait_for_output(
-      "waiting for the device 'keyboard' for 2 s: no device_node of the session is alive",
+      "waiting for the device 'keyboard' for 2 s: no device_node of the session is alive; "
+      "nothing moves until it plays port 'key'",
       kPatience));
   EXPECT_TRUE(alone.wait_for_output(
       "no answer to the first sample for 2 s: no sim_node of the session is alive", kPatience));

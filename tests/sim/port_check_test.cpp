@@ -100,6 +100,29 @@ ports:
   EXPECT_EQ(problems.all()[1].message.find("port 'pedal' wants"), 0u);
 }
 
+TEST(PortCheck, SaysWhatASessionOfEachClockDoesWithoutTheDeviceOfAPort) {
+  const scene::Scene scene = walls_of("500");
+  using config::Clock;
+  const std::vector<std::pair<Clock, std::string>> results{
+      {Clock::kRealtime, "it stays at rest until one joins the session"},
+      {Clock::kLockstep,
+       "in lockstep `cordis run` waits, and nothing moves until one joins the session"},
+      {Clock::kAsap, "it stays at rest, as an asap session has no devices"}};
+  for (const auto& [clock, result] : results) {
+    config::Problems problems;
+    config::Launch launch;
+    launch.file = "l";
+    launch.clock = clock;
+
+    check_devices(launch, scene, problems);
+
+    ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+    EXPECT_EQ(
+        problems.all()[0].message,
+        "port 'key' wants the device 'keyboard', and l has no device_node of that name: " + result);
+  }
+}
+
 /// The device file `{axes: 1, ...}` with these keys.
 config::DeviceLimits limits_of(const std::string& keys) {
   config::Problems problems;
