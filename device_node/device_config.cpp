@@ -260,10 +260,34 @@ LoadedDevice read_device(const config::Value& mapping, const std::string& node,
   return device;
 }
 
+namespace {
+
+/// Keys and words of the section of a node without a device file that no device file has.
+void report_slips(const config::LaunchNode& node, config::Problems& problems) {
+  std::vector<config::Value::Entry> keys;
+  for (const config::Value::Entry& entry : node.section.entries()) {
+    if (entry.key != "device") keys.push_back(entry);
+  }
+  config::Problems of_the_section;
+  try {
+    read_device(config::Value::mapping(std::move(keys), node.section.place()), node.name,
+                of_the_section);
+  } catch (const config::ConfigError& error) {
+    for (const config::Problem& problem : error.problems()) {
+      const bool is_slip = problem.message.starts_with("unknown key ") ||
+                           problem.message.find(" must be one of ") != std::string::npos;
+      if (is_slip) problems.error(problem.place, problem.message, problem.hint);
+    }
+  }
+}
+
+}  // namespace
+
 LoadedDevice load_device(const config::Launch& launch, const config::LaunchNode& node,
                          config::Problems& problems) {
   const config::Value mapping = config::device_mapping(launch, node, problems);
-  problems.throw_if_any();
+  if (!mapping.exists()) report_slips(node, problems);
+  if (!mapping.exists()) problems.throw_if_any();
   if (launch.clock == config::Clock::kAsap) {
     problems.error(
         node.place,

@@ -52,6 +52,17 @@ int check_other_nodes(const config::Launch& launch, const std::vector<std::strin
   return check_nodes(plan, signals).value_or(kSuccess);
 }
 
+/// Everything that is wrong in the files of all nodes, before it throws.
+SceneCheck check_scene_and_nodes(const CheckOptions& options) {
+  try {
+    return check_scene(options);
+  } catch (const config::ConfigError& error) {
+    if (!options.plan_alone && !options.text)
+      check_faulty_launch(options.file, options.overrides, error.problems(), /*with_sim=*/false);
+    throw;
+  }
+}
+
 int check_take(const CheckOptions& options, const PutJson& put_json) {
   const TakeReport report = check_take_file(options.file);
   if (options.json_file != "-") node::print_text(stdout, report.text);
@@ -61,7 +72,7 @@ int check_take(const CheckOptions& options, const PutJson& put_json) {
 
 int check_file(const CheckOptions& options, const PutJson& put_json) {
   if (!options.text && is_take(options.file)) return check_take(options, put_json);
-  const SceneCheck check = check_scene(options);
+  const SceneCheck check = check_scene_and_nodes(options);
   if (options.json_file != "-") node::print_text(stdout, text_of(check));
   put_json(json_of(check));
   const std::string problems = check.problems.text();
@@ -173,7 +184,8 @@ void add_check_verb(CommandLine& line) {
       "Every CRC, index and count of a take is checked; it says at which byte what is wrong.\n"
       "Paths in a file on standard input begin in the present folder; of a launch file there the\n"
       "scene and its devices are checked, and no other nodes.\n"
-      "Exit code: 0 `cordis run` plays it, or the take is whole, 1 a check failed itself,\n"
+      "Exit code: 0 `cordis run` plays it, in lockstep once all its devices have joined, or the\n"
+      "take is whole, 1 a check failed itself,\n"
       "2 `cordis run` refuses it, or the take is damaged; of several files the highest.\n\n"
       "Examples:\n"
       "  cordis check launch_configs/plasticine.yaml\n"

@@ -41,12 +41,14 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
   return result;
 }
 
-/// The launch file of these options; empty when their file is a scene.
-std::optional<config::Launch> launch_of(const CheckOptions& options) {
-  config::Problems problems;
-  const config::Value root = options.text ? config::load_text(*options.text, options.file, problems)
-                                          : config::load_file(options.file, problems);
-  problems.throw_if_any();
+/// The launch file of these options, as far as it can be read; empty when their file is a scene.
+/// What is wrong with it goes to `problems`, but for a file that is no YAML, which throws.
+std::optional<config::Launch> launch_of(const CheckOptions& options, config::Problems& problems) {
+  config::Problems of_the_text;  // which are found again when the file is read as what it is
+  const config::Value root = options.text
+                                 ? config::load_text(*options.text, options.file, of_the_text)
+                                 : config::load_file(options.file, of_the_text);
+  if (!root.exists()) of_the_text.throw_if_any();
   if (!config::is_launch_file(root)) {
     if (!options.overrides.empty())
       throw std::runtime_error("'" + options.overrides[0] + "' changes a launch file, and " +
@@ -58,14 +60,15 @@ std::optional<config::Launch> launch_of(const CheckOptions& options) {
           ? config::load_launch_text(*options.text, options.file, options.overrides, problems)
           : config::load_launch(options.file, options.overrides, problems);
   config::check_domain(launch, problems);
-  problems.throw_if_any();
   return launch;
 }
 
-const config::LaunchNode& sim_node_of(const config::Launch& launch) {
+const config::LaunchNode& sim_node_of(const config::Launch& launch,
+                                      const config::Problems& problems) {
   const auto found =
       std::find_if(launch.nodes.begin(), launch.nodes.end(),
                    [](const config::LaunchNode& node) { return node.program == "sim_node"; });
+  if (found == launch.nodes.end()) problems.throw_if_any();
   if (found == launch.nodes.end())
     throw std::runtime_error(launch.file + " has no sim_node, whose scene could be checked");
   return *found;
@@ -84,14 +87,15 @@ double SceneCheck::real_time_rate() const noexcept {
 SceneCheck check_scene(const CheckOptions& options) {
   SceneCheck check;
   check.options = options;
-  check.launch = launch_of(options);
+  check.launch = launch_of(options, check.problems);
   const std::optional<config::Launch>& launch = check.launch;
   std::string scene_file = options.file;
   config::Place referrer;
   bool force = options.force;
   if (launch) {
-    const sim::SimSection section = sim::read_sim_section(sim_node_of(*launch), check.problems);
-    check.problems.throw_if_any();
+    const sim::SimSection section =
+        sim::read_sim_section(sim_node_of(*launch, check.problems), check.problems);
+    if (section.scene_file.empty()) check.problems.throw_if_any();
     scene_file = launch->resolve(section.scene_file).string();
     referrer = section.scene_place;
     force = force || section.force;

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
+#include "node/config/problem.h"
 
 namespace cordis::cli {
 
@@ -14,5 +17,12 @@ namespace cordis::cli {
 /// a file is wrong,
 ///         kFailure when a check itself failed, kSuccess when a signal wanted the end
 std::optional<int> check_nodes(const RunPlan& plan, StopSignals& signals);
+
+/// Lets the nodes of a launch file that has problems check their own files too, so that a person
+/// sees all problems at once. Does nothing for a file without nodes.
+/// @param known     problems of the file, which are not printed again
+/// @param with_sim  the sim_node too
+void check_faulty_launch(const std::string& launch_file, const std::vector<std::string>& overrides,
+                         const std::vector<config::Problem>& known, bool with_sim);
 
 }  // namespace cordis::cli

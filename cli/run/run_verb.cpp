@@ -28,6 +28,8 @@ namespace {
 config::Launch read_launch(const RunOptions& options) {
   config::Problems problems;
   config::Launch launch = config::load_launch(options.launch_file, options.overrides, problems);
+  if (problems.has_errors())
+    check_faulty_launch(options.launch_file, options.overrides, problems.all(), /*with_sim=*/true);
   problems.throw_if_any();
   for (const config::Problem& warning : problems.all()) {
     node::print_text(stderr, warning.text() + "\n");
@@ -62,8 +64,8 @@ int run(const RunOptions& options) {
   setenv("CORDIS_LAUNCHED", "1", /*replace=*/1);
   // A viz_node that is started again keeps its pages: viz_node/main.cpp.
   setenv("CORDIS_PAGE_TOKEN", node::random_token().c_str(), /*replace=*/0);
-  StopSignals signals;
   const config::Launch launch = read_launch(options);
+  StopSignals signals;
   RunPlan plan = plan_run(launch, options, program_directory());
   if (options.dry_run) {
     for (const PlannedNode& node : plan.nodes) std::puts(shell_line(node.command.words).c_str());

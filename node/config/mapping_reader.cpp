@@ -47,6 +47,20 @@ std::string renamed_hint(const std::string& word, const std::vector<std::string>
   return {};
 }
 
+/// True if all characters are digits.
+bool is_digits(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// The hint for `mass_kg: 1,5` within braces, which is 1 and a key 5; empty for all else.
+std::string comma_hint(const Value::Entry& before, const Value::Entry& entry) {
+  const std::string& number = before.value.text();
+  const bool is_number =
+      !before.value.quoted() && is_digits(number.substr(number.starts_with('-') ? 1 : 0));
+  if (!is_number || !is_digits(entry.key) || entry.value.kind() != Value::Kind::kNothing) return {};
+  return "write a decimal point, not a comma: " + before.key + ": " + number + "." + entry.key;
+}
+
 /// What a required number is taken for after a problem: in range, so that no second problem follows
 /// from it.
 double placeholder(const Range& range) {
@@ -292,10 +306,13 @@ void MappingReader::error_at(const std::string& key, std::string message, std::s
 
 void MappingReader::finish() {
   constexpr std::size_t kMaxListed = 40;
-  for (const Value::Entry& entry : value_.entries()) {
+  const std::vector<Value::Entry>& entries = value_.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const Value::Entry& entry = entries[i];
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     if (problems_.is_full()) return;
     std::string hint = renamed_hint(entry.key, known_);
+    if (hint.empty() && i > 0) hint = comma_hint(entries[i - 1], entry);
     if (hint.empty()) hint = did_you_mean(entry.key, known_);
     if (hint.empty() && entry.key.find(':') != std::string::npos)
       hint = "write a space after the ':'";

@@ -33,6 +33,8 @@ bool says_not_finite(std::string_view text) {
 /// How to write what was meant by a text that is no number.
 std::string hint_for_number(const Value& value) {
   const std::string& text = value.text();
+  if (text.find('$') != std::string::npos && !value.quoted())
+    return "a $parameter stands alone: nothing is computed with it here";
   double number = 0.0;
   const std::string_view plain = without_plus(text);
   const auto [end, failure] = std::from_chars(plain.data(), plain.data() + plain.size(), number);

@@ -108,6 +108,7 @@ void TreeBuilder::begin_entry(const Value& key) {
   mapping.has_key = true;
   mapping.key = key.text();
   mapping.key_place = key.place();
+  mapping.key_is_word = key.kind() == Value::Kind::kScalar;
   if (key.kind() != Value::Kind::kScalar)
     problems_.error(key.place(), "a key must be a word, got " + key.described());
 }
@@ -115,6 +116,7 @@ void TreeBuilder::begin_entry(const Value& key) {
 void TreeBuilder::end_entry(Value value) {
   Open& mapping = open_.back();
   mapping.has_key = false;
+  if (!mapping.key_is_word) return;
   if (mapping.key == "<<") {
     merge(mapping, value);
     return;

@@ -63,6 +63,7 @@ class TreeBuilder : public YAML::EventHandler {
     std::set<std::size_t> hidden;               // entries for which something is written out
     bool has_key = false;                       // of a mapping: its key has come, its value has not
     std::string key;
+    bool key_is_word = true;
     Place key_place;
   };
 

@@ -442,6 +442,46 @@ TEST_F(Checked, TooSlowForRealTimeIsReportedWithBothAlternatives) {
   EXPECT_FALSE(nlohmann::json::parse(json_of(check))["load"].contains("alternatives"));
 }
 
+TEST_F(Checked, AKeyThatStandsTwiceHidesNothingElse) {
+  write("100", R"(space: 2
+tuning: 440
+matter: {}
+)");
+  EXPECT_EQ(run({}), kBadInput);
+  for (const char* sentence :
+       {":12:1: error: duplicate key 'space'", ":13:1: error: unknown key 'tuning' in scene",
+        ":14:1: error: duplicate key 'matter'"}) {
+    EXPECT_NE(error_.find(sentence), std::string::npos) << error_;
+  }
+}
+
+TEST_F(Checked, AFixedPointThatSetsTheLimitHasNoMass) {
+  std::ofstream(path_) << R"(cordis: 1
+space: 2
+step: {rate_hz: 5000}
+matter:
+  sun: {kind: fixed, at_m: [0, 0]}
+  earth: {kind: mass, mass_kg: 0.1, at_m: [1, 0], velocity_m_per_s: [0, 1]}
+liaisons:
+  gravity: {parameters: {gm: 1.0}, elasticity: "gm * mass_b_kg / distance_m^2"}
+links:
+  - {liaison: gravity, between: [sun, earth]}
+)";
+  EXPECT_EQ(run({"--plan"}), kSuccess) << error_;
+  EXPECT_NE(out_.find(":10) at the fixed point sun ("), std::string::npos) << out_;
+}
+
+TEST_F(Checked, AHandAtAPortOfRoleLiaisonHasNoLimitOfItsViscosityWithoutDelay) {
+  write("100",
+        R"(ports:
+  key: {device: keyboard, axes: [0], role: liaison, mass_kg: 1, at_m: [0]}
+)");
+  ASSERT_EQ(run({"--plan"}), kSuccess) << error_;
+  EXPECT_NE(out_.find(" N/m and as its own viscosity divided by 100 ms, at 10 Hz and 1 period"),
+            std::string::npos)
+      << out_;
+}
+
 TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
   write("100");
   EXPECT_EQ(run({"--band", "loud"}), kBadInput);

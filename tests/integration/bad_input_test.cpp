@@ -136,6 +136,36 @@ TEST(BadInput, NumbersThatAreNotFiniteAreRefused) {
   }
 }
 
+TEST(BadInput, ProblemsOfTheLaunchFileItsSceneAndAllNodesAreReportedAtOnceAndOnce) {
+  LiveSession session("lockstep", R"(  sim: {node: sim_node, scene: scene.yaml}
+  keyboard: {node: device_node, driver: mouse, travel_cm: 3}
+  view: {node: viz_node, port: 80800}
+  tape: {node: record_nod}
+)",
+                      "two words");
+  session.add_file("scene.yaml", with(with(wall_scene(1), "mass_kg: 1,", "mass_kg: -1,"),
+                                      "kind: spring", "kind: sprung"));
+  const std::vector<std::string> wanted{
+      "the name of a session is 1 to 64 letters",
+      "'node' in node 'tape' must be one of",
+      "missing key 'device' in device_node 'keyboard'",
+      "must be one of mock, script, replay",
+      "unknown key 'travel_cm' in device 'keyboard'",
+      "'port' in viz_node 'view' must be between 0 and 65535, got 80800",
+      "must be one of spring,",
+      "must be > 0, got -1"};
+  for (const std::string verb : {"run", "check"}) {
+    ChildProcess process({program_path("cordis"), verb, session.launch_file()});
+    EXPECT_EQ(process.wait(kPatience), 2) << verb;
+    const std::string said = process.output();
+    for (const std::string& sentence : wanted) {
+      const std::size_t first = said.find(sentence);
+      ASSERT_NE(first, std::string::npos) << verb << ": " << sentence << "\nin\n" << said;
+      EXPECT_EQ(said.find(sentence, first + 1), std::string::npos) << verb << "\n" << said;
+    }
+  }
+}
+
 TEST(BadInput, AllProblemsOfAllNodesAreReportedAtOnce) {
   const Outcome outcome =
       run(with(wall_scene(1), "kind: spring", "kind: sprung"), "cordis: 1\naxes: 99\n");

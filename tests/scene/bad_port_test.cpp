@@ -125,8 +125,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "no matter, port or links are named 'aa'", ""},
         BadScene{kLinked, "signals:\n  s: {of: ^\"a.links[0]\", quantity: position}\n",
                  "'a.links' has no links", ""},
-        BadScene{kLinked, "signals:\n  s: {of: \"a[0]\", quantity: speed, ^unit: m}\n",
-                 "unknown key 'unit' in signal 's'", "known keys: of, quantity, axis, sound, rate"},
+        BadScene{
+            kLinked, "signals:\n  s: {of: \"a[0]\", quantity: speed, ^unit: m}\n",
+            "unknown key 'unit' in signal 's'",
+            "known keys: of, quantity, axis, take, by, near_m, about_m, sound, rate, full_scale"},
         BadScene{kLinked, "signals:\n  ^s s: {quantity: energy}\n",
                  "a name is of letters, digits, '_' and '-' and begins with a letter, got 's s'",
                  ""}));

@@ -293,6 +293,25 @@ signals:
             "unknown key 'near_m' in signal 'p'");
 }
 
+TEST(SignalReader, SaysWhatIsWrongWithASignalOfMatterThatIsWrongItself) {
+  config::Problems problems;
+  load_scene_text(scene_head(2) + R"(matter:
+  a: {kind: mass, mass_kg: -1, at_m: [0, 0]}
+signals:
+  w: {of: a, quantity: postion, axis: x}
+  x: {of: a, quantity: position}
+  y: {of: a, quantity: speed, unit: m}
+  z: {of: a, quantity: position, axis: y, take: mean}
+)",
+                  "t", problems);
+  std::vector<std::string> said;
+  for (const config::Problem& problem : problems.in_order()) said.push_back(problem.message);
+  EXPECT_EQ(said,
+            (std::vector<std::string>{
+                "'mass_kg' in matter 'a' must be > 0, got -1", "nothing has a quantity 'postion'",
+                "missing key 'axis' in signal 'x'", "unknown key 'unit' in signal 'y'"}));
+}
+
 TEST(SignalReader, OfEachStepAreThoseThatSayRateStepOrSound) {
   Observed run(sound_scene(2,
                            R"(matter:

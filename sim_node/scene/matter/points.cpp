@@ -74,7 +74,7 @@ GeneratedMatter read_points(Source& source) {
   std::vector<double> mass = is_fixed || source.needs_no_mass
                                  ? reader.optional_numbers("mass_kg", {1.0})
                                  : reader.required_numbers("mass_kg");
-  if (mass.empty()) mass = {1.0};  // after a problem
+  if (!reader.has("mass_kg")) mass = {1.0};  // also after the problem that it is missing
   std::vector<double> radius = reader.optional_numbers("radius_m", {0.0});
   spread(source, "mass_kg", count, mass);
   spread(source, "radius_m", count, radius);

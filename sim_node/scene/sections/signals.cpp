@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/config/nearest_word.h"
 #include "sim_node/scene/language/name.h"
 #include "sim_node/scene/language/point.h"
 #include "sim_node/scene/sections/quantity_words.h"
@@ -292,9 +293,47 @@ void read_count_of_several(Assembly& assembly, config::MappingReader& reader,
   signals.push_back(std::move(signal));
 }
 
+/// Keys that no signal has, before `of` and `quantity` decide which of all it takes.
+void refuse_unknown_keys(const Value::Entry& entry, config::MappingReader& reader,
+                         config::Problems& problems) {
+  const std::vector<std::string> keys{"of",     "quantity", "axis",  "take", "by",
+                                      "near_m", "about_m",  "sound", "rate", "full_scale"};
+  for (const Value::Entry& key : entry.value.entries()) {
+    if (std::ranges::find(keys, key.key) != keys.end()) continue;
+    reader.optional_value(key.key);
+    std::string hint = config::did_you_mean(key.key, keys);
+    if (hint.empty()) {
+      hint = "known keys: ";
+      for (const std::string& known : keys) hint += (known == "of" ? "" : ", ") + known;
+    }
+    problems.error(key.key_place, "unknown key '" + key.key + "' in " + reader.what(), hint);
+  }
+}
+
+/// Checks a signal of something that has a problem itself: what is wrong whatever that is.
+void check_unowned_signal(const Assembly& assembly, config::MappingReader& reader,
+                          const Value& subject) {
+  const std::string word = reader.required_text("quantity");
+  std::vector<std::string> known;
+  for (const QuantityWord& quantity : quantity_words()) known.emplace_back(quantity.word);
+  if (!word.empty() && std::ranges::find(known, word) == known.end()) {
+    reader.error_at("quantity", "nothing has a quantity '" + word + "'",
+                    config::did_you_mean(word, known));
+  }
+  const QuantityWord* of_mat = find_quantity(Owner::kMat, word);
+  const NameEntry* name = assembly.names.find(subject.text());
+  const bool is_of_matter = name != nullptr && name->kind == Named::kMatter;
+  if (of_mat != nullptr && of_mat->has_direction && is_of_matter && assembly.scene.space() > 1)
+    reader.required_choice("axis", axis_words(assembly.scene.space()));
+  for (const char* key : {"axis", "take", "by", "near_m", "about_m", "sound", "rate", "full_scale"})
+    reader.optional_value(key);
+  reader.finish();
+}
+
 void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Signal>& signals) {
   check_name(entry.key, entry.key_place, assembly.problems);
   config::MappingReader reader(entry.value, "signal '" + entry.key + "'", assembly.problems);
+  refuse_unknown_keys(entry, reader, assembly.problems);
   const Value subject = reader.optional_value("of");
   JoinedLiaisons joined = joined_liaisons(assembly, subject);
   if (joined.sets.size() == 1 && joined.others.empty())
@@ -304,7 +343,7 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
   std::optional<Selection> picked;
   if (subject.exists()) {
     picked = select(subject, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
-    if (!picked) return;  // whose signal it is decides what else it may say
+    if (!picked) return check_unowned_signal(assembly, reader, subject);
   }
   const bool is_link = picked && picked->kind == Named::kLinks;
   const std::string word = reader.optional_text("quantity", "");
