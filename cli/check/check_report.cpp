@@ -37,9 +37,13 @@ std::string limit_text(const SceneCheck& check) {
   }
   const scene::Called liaison = scene::call_liaison(check.scene, bound.liaison);
   const scene::Called mat = scene::call_mat(check.scene, bound.mat);
+  const engine::Mat& body = check.scene.network.mats[bound.mat];
+  if (body.kind == engine::MatKind::kFixed) {
+    return fmt::format("limit       set by {}{} at the fixed point {}{}\n", liaison.name,
+                       location(liaison), mat.name, location(mat));
+  }
   return fmt::format("limit       set by {}{} at the mass {} of {:.4g} kg{}\n", liaison.name,
-                     location(liaison), mat.name, check.scene.network.mats[bound.mat].mass,
-                     location(mat));
+                     location(liaison), mat.name, body.mass, location(mat));
 }
 
 /// True if no pose whatever has more partners than the step is certified for.
@@ -209,14 +213,16 @@ std::string port_text(const SceneCheck& check, const PortCheck& port) {
   const double rate = check.scene.gesture_rate_hz;
   const int delay_periods = check.delay_periods;
   const std::string delay = config::count_text(static_cast<std::size_t>(delay_periods), "period");
+  const std::string of_viscosity =
+      delay_periods == 0 ? std::string()
+                         : fmt::format(" and as its own viscosity divided by {:.3g} ms",
+                                       1e3 * delay_periods / rate);
   const std::string who =
       fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
   if (port.port->role == scene::Role::kLiaison) {
     return who +
-           fmt::format(
-               "a hand may be as stiff as {:.4g} N/m, and as its own viscosity over "
-               "{:.3g} ms, at {:.4g} Hz and {} of delay\n",
-               port.largest_hand_stiffness, 1e3 * delay_periods / rate, rate, delay) +
+           fmt::format("a hand may be as stiff as {:.4g} N/m{}, at {:.4g} Hz and {} of delay\n",
+                       port.largest_hand_stiffness, of_viscosity, rate, delay) +
            needs_text(port.port->needs);
   }
   std::string text =

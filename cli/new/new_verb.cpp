@@ -97,7 +97,9 @@ void add_new_verb(CommandLine& line) {
       "A launch file comes with the scene and the device of its nodes, NAME_scene.yaml and\n"
       "NAME_device.yaml, where those are not there yet. The first line of each file names its "
       "schema\n"
-      "for editors (`cordis schema`). An existing file is never overwritten.\n\n"
+      "for editors (`cordis schema`). An existing file is never overwritten.\n"
+      "A new file has a name of 1 to 64 letters, digits, '_' and '-', from which its session or\n"
+      "scene has its name. Its folder, and files of other verbs, may have any name.\n\n"
       "Examples:\n"
       "  cordis new launch first\n"
       "  cordis new scene second\n");

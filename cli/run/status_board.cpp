@@ -74,7 +74,9 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   }
   if (status.kind() == msg::KIND_DEVICE_NODE &&
       (status.port_energy_j() != 0.0 || status.passivity_ticks() > 0)) {
-    text += fmt::format("{} gave the hand {:.3g} J, damped in {}\n", node, status.port_energy_j(),
+    const bool gave = status.port_energy_j() >= 0.0;
+    text += fmt::format("{} gave {} {:.3g} J, damped in {}\n", gave ? node : "the hand",
+                        gave ? "the hand" : node, std::abs(status.port_energy_j()),
                         config::count_text(status.passivity_ticks(), "tick"));
   }
   if (status.link_unanswered() > 0) {

@@ -118,7 +118,7 @@ steps with more pairs in range than room, slow: 3
 states of pairs FORGOTTEN for lack of memory: 17
 positions and forces refused, not finite: 5
 state hash 0123456789abcdef after 10000 steps
-keyboard gave the hand -0.002 J, damped in 7 ticks
+the hand gave keyboard 0.002 J, damped in 7 ticks
 keyboard: 1.20 % of 20000 samples without an answer of their own
 )");
 }

@@ -62,8 +62,9 @@ TEST(Reference, SaysThatTheSamplesAreTooFewAndHowManyAreNeeded) {
   } catch (const plan::NothingMoves&) {
     FAIL() << "it moves";
   } catch (const std::runtime_error& refusal) {
-    EXPECT_EQ(refusal.what(), std::string("too few samples: the duration has 1, and 8 are needed "
-                                          "to distinguish a motion from rest: ask for 0.4 s"));
+    EXPECT_EQ(refusal.what(),
+              std::string("too few samples: the duration has 1 sample, and 8 are "
+                          "needed to distinguish a motion from rest: ask for 0.4 s"));
   }
 }
 

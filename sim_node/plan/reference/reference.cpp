@@ -217,7 +217,8 @@ engine::NetworkDescription moved_beside(engine::NetworkDescription network, doub
 
 void require_samples(int count, const std::string& what, const std::string& advice = {}) {
   if (count >= kFewestSamples) return;
-  throw std::runtime_error("too few samples: " + what + " " + std::to_string(count) + ", and " +
+  throw std::runtime_error("too few samples: " + what + " " + std::to_string(count) +
+                           (count == 1 ? " sample, and " : " samples, and ") +
                            std::to_string(kFewestSamples) +
                            " are needed to distinguish a motion from rest" + advice);
 }
