@@ -46,19 +46,19 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     steady_[edge.mat_a] += number(edge.stiffness, edge.viscosity) * both;
     steady_[edge.mat_b] += number(edge.stiffness, edge.viscosity) * both;
   }
-  for (const plan::ContactBound& crowd : graph.crowds) {
-    const double most = plan::largest_of_others(crowd, weight);
+  for (const plan::ContactBound& contact : graph.contacts) {
+    const double most = plan::largest_of_others(contact, weight);
     const bool is_second_half =
-        !members_.empty() && crowd.counted && members_.back().set == crowd.set;
-    const std::size_t first = is_second_half ? network.sets[crowd.set].set_p.size() : 0;
-    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
-      const std::uint32_t mat = crowd.members[m];
-      const double one = number(crowd.stiffness, crowd.viscosity) * (weight[mat] + most);
-      if (crowd.counted) {
+        !members_.empty() && contact.counted && members_.back().set == contact.set;
+    const std::size_t first = is_second_half ? network.sets[contact.set].set_p.size() : 0;
+    for (std::size_t m = 0; m < contact.members.size(); ++m) {
+      const std::uint32_t mat = contact.members[m];
+      const double one = number(contact.stiffness, contact.viscosity) * (weight[mat] + most);
+      if (contact.counted) {
         members_.push_back(
-            {crowd.set, static_cast<std::uint32_t>(first + m), mat, crowd.neighbours[m], one});
+            {contact.set, static_cast<std::uint32_t>(first + m), mat, contact.neighbours[m], one});
       } else {
-        steady_[mat] += crowd.neighbours[m] * one;
+        steady_[mat] += contact.neighbours[m] * one;
       }
     }
   }

@@ -108,7 +108,7 @@ Vec3 velocity_of(const engine::World& world, const scene::Port& port) noexcept {
   return sum;
 }
 
-void push(engine::World& world, const scene::Port& port, const Vec3& force) noexcept {
+void apply_force(engine::World& world, const scene::Port& port, const Vec3& force) noexcept {
   CORDIS_ASSERT(port.role == scene::Role::kLiaison);
   if (port.body.empty()) {
     world.set_external_force(port.mat, force);

@@ -26,6 +26,6 @@ engine::Vec3 velocity_of(const engine::World& world, const scene::Port& port) no
 /// Puts a force on the MAT, or on each mass of the body its share. Real time: O(masses), no allocation.
 /// @param force  [N]
 /// Precondition: role liaison.
-void push(engine::World& world, const scene::Port& port, const engine::Vec3& force) noexcept;
+void apply_force(engine::World& world, const scene::Port& port, const engine::Vec3& force) noexcept;
 
 }  // namespace cordis::sim

@@ -25,11 +25,11 @@ std::optional<plan::LiaisonId> liaison_without_largest_slope(const plan::Liaison
     if (edge.mat_a == mat || edge.mat_b == mat) return edge.liaison;
     if (!found) found = edge.liaison;
   }
-  for (const plan::ContactBound& crowd : graph.crowds) {
+  for (const plan::ContactBound& contact : graph.contacts) {
     const bool is_at_mat =
-        std::find(crowd.members.begin(), crowd.members.end(), mat) != crowd.members.end();
-    if (!crowd.bounded && (is_at_mat || !found))
-      found = plan::LiaisonId{plan::LiaisonKind::kSet, crowd.set};
+        std::find(contact.members.begin(), contact.members.end(), mat) != contact.members.end();
+    if (!contact.bounded && (is_at_mat || !found))
+      found = plan::LiaisonId{plan::LiaisonKind::kSet, contact.set};
   }
   return found;
 }
@@ -102,12 +102,12 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
     if (edge.mat_a != mat && edge.mat_b != mat) continue;
     add(edge.liaison, edge.stiffness, edge.viscosity, weight[edge.mat_a] + weight[edge.mat_b]);
   }
-  for (const plan::ContactBound& crowd : graph.crowds) {
-    const double most = plan::largest_of_others(crowd, weight);
-    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
-      if (crowd.members[m] != mat) continue;
-      add({plan::LiaisonKind::kSet, crowd.set}, crowd.stiffness, crowd.viscosity,
-          crowd.neighbours[m] * (weight[mat] + most));
+  for (const plan::ContactBound& contact : graph.contacts) {
+    const double most = plan::largest_of_others(contact, weight);
+    for (std::size_t m = 0; m < contact.members.size(); ++m) {
+      if (contact.members[m] != mat) continue;
+      add({plan::LiaisonKind::kSet, contact.set}, contact.stiffness, contact.viscosity,
+          contact.neighbours[m] * (weight[mat] + most));
     }
   }
   if (!liaison) return "nothing but what is given from outside moves it";

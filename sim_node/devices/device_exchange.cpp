@@ -186,7 +186,7 @@ void DeviceExchange::play(engine::World& world, int number, double share) noexce
       const engine::Vec3 stop = travel_stops_->force(p, world);
       if (!stop.isZero(0.0)) added = stop;
     }
-    push(world, port, value + added);
+    apply_force(world, port, value + added);
   }
   if (!passivity_controller_ || number != 1) return;
   if (std::exchange(new_work_, false)) passivity_controller_->start();

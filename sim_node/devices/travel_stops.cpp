@@ -51,7 +51,7 @@ void TravelStops::set_reach(const DeviceReach& reach) noexcept {
 /// @param place  of the mass, towards the end [m]  @param way  in a step [m]
 /// @param back   by which an end that is beyond its wanted place comes back [m]
 /// @return by how far the mass would go beyond the end [m]
-double TravelStops::Stop::push(double place, double way, double back) noexcept {
+double TravelStops::Stop::reaction(double place, double way, double back) noexcept {
   if (std::exchange(is_new, false)) end = std::max(place, wanted);
   end = std::max(wanted, end - back);
   return std::max(place + way - end, 0.0);
@@ -64,9 +64,9 @@ Vec3 TravelStops::force(std::size_t port, const engine::World& world) noexcept {
   Vec3 force = Vec3::Zero();
   for (Axis& axis : stopped.axes) {
     const double place = moved.dot(axis.direction);
-    const double growth = way.dot(axis.direction);
-    const double above = axis.upper.push(place, growth, kReturn * dt_);
-    const double below = axis.lower.push(-place, -growth, kReturn * dt_);
+    const double increment = way.dot(axis.direction);
+    const double above = axis.upper.reaction(place, increment, kReturn * dt_);
+    const double below = axis.lower.reaction(-place, -increment, kReturn * dt_);
     force += stopped.strength * (below - above) * axis.direction;
   }
   return force;

@@ -46,7 +46,7 @@ class TravelStops {
     double end = DeviceReach::kFarthest;     // where it is now [m]
     bool is_new = true;                      // the mass may be beyond it
 
-    double push(double place, double way, double back) noexcept;
+    double reaction(double place, double way, double back) noexcept;
   };
   struct Axis {
     std::uint32_t axis = 0;  // of the device

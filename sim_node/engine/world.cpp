@@ -36,7 +36,7 @@ double gravity_at_start(const NetworkDescription& network) noexcept {
 World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
-  state_->outside.begin(state_->mats);
+  state_->port_inputs.begin(state_->mats);
   state_->scheme->start(*state_);
   make_room();
 }
@@ -82,15 +82,15 @@ std::size_t World::block_count() const noexcept {
 }
 
 void World::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
-  state_->outside.impose_position(mat, position);
+  state_->port_inputs.impose_position(mat, position);
 }
 
 void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
   CORDIS_ASSERT(mat < state_->mats.count() && state_->mats.is_mass(mat));
-  const Vec3 before = state_->outside.external_force(mat);
-  state_->outside.hold_force(mat, force);
+  const Vec3 before = state_->port_inputs.external_force(mat);
+  state_->port_inputs.hold_force(mat, force);
   if (!state_->freezing) return;
-  const Vec3 now = state_->outside.external_force(mat);
+  const Vec3 now = state_->port_inputs.external_force(mat);
   state_->freezing->hold(mat, !now.isZero(0.0));
   if (now != before) state_->freezing->wake(mat);
 }
@@ -282,10 +282,10 @@ void World::restore(const Snapshot& snapshot) {
 
 void World::end_external_forces() noexcept {
   if (state_->freezing) {
-    for (std::size_t i = 0; i < state_->outside.held_count(); ++i)
-      set_external_force(state_->outside.held_mat(i), Vec3::Zero());
+    for (std::size_t i = 0; i < state_->port_inputs.held_count(); ++i)
+      set_external_force(state_->port_inputs.held_mat(i), Vec3::Zero());
   }
-  state_->outside.let_go();
+  state_->port_inputs.let_go();
 }
 
 std::size_t World::max_values_of_state() const noexcept {
@@ -330,7 +330,7 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   change.switching = state_->stored_energy() - stored_before;
   state_->account.add(change);
   // The rest belongs to linear links in 1 dimension, whose energy stands in no account, and to gravity.
-  // That has another potential at the start as well, so that the change depends on no origin.
+  // Gravity has another potential at the start as well, so that the change depends on no origin.
   const double start_shift =
       gravity_at_start(network().description()) - gravity_at_start(before.network().description());
   state_->account.shift_initial(start_shift);

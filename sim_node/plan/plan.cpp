@@ -91,7 +91,7 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
   const engine::ModalBlock block(network);
   ModalLoad load;
   double most = 0.0;
-  if (!graph.crowds.empty()) load.together = std::numeric_limits<double>::infinity();
+  if (!graph.contacts.empty()) load.together = std::numeric_limits<double>::infinity();
   for (const Edge& edge : graph.edges) {
     const bool to_port = network.mats[edge.mat_a].kind == engine::MatKind::kPort ||
                          network.mats[edge.mat_b].kind == engine::MatKind::kPort;
@@ -175,10 +175,10 @@ std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription&
     consider(edge.liaison, edge.stiffness,
              graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    if (clamped && !is_clamped(network, {LiaisonKind::kSet, crowd.set})) continue;
-    consider({LiaisonKind::kSet, crowd.set}, crowd.stiffness,
-             lightest(graph, crowd.members) + lightest(graph, crowd.others));
+  for (const ContactBound& contact : graph.contacts) {
+    if (clamped && !is_clamped(network, {LiaisonKind::kSet, contact.set})) continue;
+    consider({LiaisonKind::kSet, contact.set}, contact.stiffness,
+             lightest(graph, contact.members) + lightest(graph, contact.others));
   }
   return worst;
 }
@@ -271,9 +271,9 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
     if (edge.viscosity > 0.0) ratio = std::max(ratio, edge.viscosity / edge.stiffness);
     edge.stiffness = 0.0;
   }
-  for (ContactBound& crowd : dampers.crowds) {
-    if (crowd.viscosity > 0.0) ratio = std::max(ratio, crowd.viscosity / crowd.stiffness);
-    crowd.stiffness = 0.0;
+  for (ContactBound& contact : dampers.contacts) {
+    if (contact.viscosity > 0.0) ratio = std::max(ratio, contact.viscosity / contact.stiffness);
+    contact.stiffness = 0.0;
   }
   double of_medium = 0.0;
   for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
@@ -304,9 +304,9 @@ std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& n
     consider(edge.liaison, edge.variation,
              graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    consider({LiaisonKind::kSet, crowd.set}, crowd.variation,
-             lightest(graph, crowd.members) + lightest(graph, crowd.others));
+  for (const ContactBound& contact : graph.contacts) {
+    consider({LiaisonKind::kSet, contact.set}, contact.variation,
+             lightest(graph, contact.members) + lightest(graph, contact.others));
   }
   return most;
 }
@@ -321,7 +321,7 @@ double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGrap
   graph = weighted(std::move(graph), weights);
   std::ranges::fill(graph.medium_viscosity, 0.0);
   for (Edge& edge : graph.edges) edge.viscosity = 0.0;
-  for (ContactBound& crowd : graph.crowds) crowd.viscosity = 0.0;
+  for (ContactBound& contact : graph.contacts) contact.viscosity = 0.0;
   return std::min(row_weights(graph, network.step).number, kMaxNumber);
 }
 

@@ -41,10 +41,10 @@ ReachLimit limit_at(const NetworkDescription& network, const LiaisonGraph& graph
     limit.energy =
         std::min(limit.energy, energy_followed(network.state_machines[link.state_machine], here));
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    if (crowd.bounded) continue;
-    const Reach here = reach_between(reach, network, crowd.members, crowd.others);
-    const engine::SetLiaison& set = network.sets[crowd.set];
+  for (const ContactBound& contact : graph.contacts) {
+    if (contact.bounded) continue;
+    const Reach here = reach_between(reach, network, contact.members, contact.others);
+    const engine::SetLiaison& set = network.sets[contact.set];
     limit.pair_energy = std::min(limit.pair_energy,
                                  energy_followed(network.state_machines[set.state_machine], here));
   }

@@ -731,7 +731,7 @@ double largest_damping_of(NetworkDescription network) {
   }
   plan::LiaisonGraph graph = plan::liaison_graph(network);
   for (plan::Edge& edge : graph.edges) edge.stiffness = 0.0;
-  for (plan::ContactBound& crowd : graph.crowds) crowd.stiffness = 0.0;
+  for (plan::ContactBound& contact : graph.contacts) contact.stiffness = 0.0;
   return 0.5 * plan::row_weights(graph, network.step).number;
 }
 

@@ -13,7 +13,7 @@ double kinetic_excess_of(const WorldState& world) noexcept {
   double sum = 0.0;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     if (network.mats[i].kind != MatKind::kMass) continue;
-    const Vec3 external_force = world.outside.external_force(i);
+    const Vec3 external_force = world.port_inputs.external_force(i);
     const Vec3 increment = has_moved ? world.mats.velocity_increment(i, external_force)
                                      : world.mats.next_velocity_increment(i, external_force);
     sum += network.mats[i].mass * increment.squaredNorm();
@@ -27,7 +27,7 @@ void CentralDifference::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
   const double excess = kinetic_excess_of(world);
-  world.outside.kick(mats);  // what drives push with is known from the start
+  world.port_inputs.kick(mats);  // what drives push with is known from the start
   mats.start();
   world.start_one_period_ago();
   const StepEnergy since = world.work_since_last_call();
@@ -40,16 +40,16 @@ Moved CentralDifference::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
   StepEnergy& energy = moved.energy;
-  energy.port_work = world.outside.move_ports(mats);
+  energy.port_work = world.port_inputs.move_ports(mats);
   energy += world.begin_forces(mats.force_columns());
   world.add_forces_at_half_step(energy);
-  energy.port_work += world.outside.work_at_ports(mats);
+  energy.port_work += world.port_inputs.work_at_ports(mats);
 
-  energy.port_work += world.outside.kick(mats);
+  energy.port_work += world.port_inputs.kick(mats);
   if (world.freezing) energy.dissipated += world.freezing->choose_movers(world, false);
   const AdvanceReport advance = mats.advance(world.kernel, *world.team);
-  energy.port_work += world.outside.release(mats);
-  energy.port_work += world.outside.drive_to(world.step_count + 1, mats);
+  energy.port_work += world.port_inputs.release(mats);
+  energy.port_work += world.port_inputs.drive_to(world.step_count + 1, mats);
 
   energy.dissipated += advance.medium_work;
   moved.non_finite_mats = advance.non_finite_mats;

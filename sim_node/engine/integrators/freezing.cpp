@@ -93,7 +93,7 @@ std::uint64_t first_window(double step) {
 }  // namespace
 
 Freezing::Freezing(const NetworkDescription& network)
-    : max_push_(network.mats.size(), -1.0),
+    : max_kick_(network.mats.size(), -1.0),
       max_moved_(network.mats.size(), 0.0),
       mass_over_dt2_(network.mats.size(), 0.0),
       first_window_(first_window(network.step)),
@@ -125,7 +125,7 @@ void Freezing::adopt(const NetworkDescription& network,
   max_drift_ = tolerance * tolerance;
   for (std::size_t i = 0; i < of_mats.size(); ++i) {
     const double stiffness = of_mats[i].stiffness();
-    max_push_[i] = -1.0;
+    max_kick_[i] = -1.0;
     if (mass_over_dt2_[i] == 0.0 || stiffness == 0.0) continue;
     double kick = tolerance * stiffness / mass_over_dt2_[i];
     const double weight_step = network.gravity_on(network.mats[i]).norm() * dt * dt;
@@ -133,7 +133,7 @@ void Freezing::adopt(const NetworkDescription& network,
     const double viscosity = of_mats[i].viscosity + network.medium_viscosity_on(network.mats[i]);
     double moved = tolerance;
     if (viscosity > 0.0) moved = std::min(moved, tolerance * stiffness * dt / viscosity);
-    max_push_[i] = kick * kick;
+    max_kick_[i] = kick * kick;
     max_moved_[i] = moved * moved;
   }
   const bool any_impulse =
@@ -146,7 +146,7 @@ void Freezing::adopt(const NetworkDescription& network,
 }
 
 /// A mass is awake again, with the level that it has.
-void Freezing::rouse(std::uint32_t mat) noexcept {
+void Freezing::wake_at_its_level(std::uint32_t mat) noexcept {
   if (is_asleep(mat)) {
     --asleep_count_;
     movers_changed_ = true;
@@ -158,7 +158,7 @@ void Freezing::rouse(std::uint32_t mat) noexcept {
 }
 
 void Freezing::wake(std::uint32_t mat) noexcept {
-  rouse(mat);
+  wake_at_its_level(mat);
   level_[mat] = 0;
 }
 
@@ -182,7 +182,7 @@ void Freezing::try_sleepers(std::uint64_t step) noexcept {
   const std::uint64_t pauses = step / first_pause;
   for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     if (!is_asleep(i) || pauses % (std::uint64_t{1} << level_[i]) != 0) continue;
-    rouse(i);
+    wake_at_its_level(i);
     if (level_[i] < kMaxLevel) ++level_[i];
   }
 }
@@ -257,7 +257,7 @@ void Freezing::restore_forces(MatArray& mats) const noexcept {
 }
 
 bool Freezing::is_balanced(const MatArray& mats, std::uint32_t mat) const noexcept {
-  return square_of(mats.kick_at_half_step(mat)) <= max_push_[mat];
+  return square_of(mats.kick_at_half_step(mat)) <= max_kick_[mat];
 }
 
 /// True if the mass is as slow and as near to its anchor as at rest.
@@ -330,11 +330,11 @@ void Freezing::serialize(Archive& archive) {
   archive.hash(anchor_);
 }
 
-void Freezing::restored(const PortInputs& outside) noexcept {
+void Freezing::restored(const PortInputs& port_inputs) noexcept {
   asleep_count_ = 0;
   for (std::uint32_t i = 0; i < asleep_.size(); ++i) {
     if (is_asleep(i)) ++asleep_count_;
-    held_[i] = !outside.external_force(i).isZero(0.0);
+    held_[i] = !port_inputs.external_force(i).isZero(0.0);
   }
   woken_ = true;
 }

@@ -78,8 +78,8 @@ class Freezing {
   std::span<const std::uint32_t> stopped() const noexcept { return stopped_; }
 
   void serialize(Archive& archive);
-  /// After it has been restored. @param outside  of the same state
-  void restored(const PortInputs& outside) noexcept;
+  /// After it has been restored. @param port_inputs  of the same state
+  void restored(const PortInputs& port_inputs) noexcept;
 
  private:
   /// Asleep, and its liaisons have been computed with it at rest: what their conditions remember of
@@ -90,7 +90,7 @@ class Freezing {
   auto anchor(std::uint32_t mat) noexcept { return Vec3::Map(&anchor_[3 * std::size_t{mat}]); }
   bool is_quiet(const MatArray& mats, std::uint32_t mat) noexcept;
   std::uint64_t window_of(std::uint32_t mat) const noexcept;
-  void rouse(std::uint32_t mat) noexcept;
+  void wake_at_its_level(std::uint32_t mat) noexcept;
   void try_sleepers(std::uint64_t step) noexcept;
   double stop(MatArray& mats, std::uint32_t mat, bool at_moments) noexcept;
   void wake_where_states_change(const WorldState& world) noexcept;
@@ -98,7 +98,7 @@ class Freezing {
   void list_mats(const MatArray& mats) noexcept;
   void list_movers(MatArray& mats) noexcept;
 
-  std::vector<double> max_push_;       // square of the largest kick_at_half_step at rest; < 0: none
+  std::vector<double> max_kick_;       // square of the largest kick_at_half_step at rest; < 0: none
                                        // [m^2]
   std::vector<double> max_moved_;      // square of the largest displacement in a step at rest [m^2]
   std::vector<double> mass_over_dt2_;  // [kg/s^2]; 0 unless a mass

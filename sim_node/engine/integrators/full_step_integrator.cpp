@@ -8,7 +8,7 @@ namespace cordis::engine {
 void FullStepIntegrator::begin_step(WorldState& world, StepEnergy& energy) noexcept {
   energy = pending_;
   pending_ = {};
-  energy.port_work += world.outside.move_ports(world.mats);
+  energy.port_work += world.port_inputs.move_ports(world.mats);
 }
 
 void FullStepIntegrator::find_forces(WorldState& world, const double* extrapolated,
@@ -20,8 +20,8 @@ void FullStepIntegrator::find_forces(WorldState& world, const double* extrapolat
 
 void FullStepIntegrator::find_outer_forces(WorldState& world, StepEnergy& energy) noexcept {
   // The moment of the first forces is the start: nothing has been driven or pushed on a way to it.
-  energy.port_work += world.outside.work_at_ports(world.mats, /*at_start=*/!started_);
-  const double before = world.outside.kick(world.mats);
+  energy.port_work += world.port_inputs.work_at_ports(world.mats, /*at_start=*/!started_);
+  const double before = world.port_inputs.kick(world.mats);
   if (started_) energy.port_work += before;
 }
 

@@ -96,7 +96,7 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     if (mass_[i] == 0.0) continue;
     Vec3 force = mats.force(i) - column(constant_, i);
     if (external != nullptr) force += external->external_force(i);
-    column(kick_, i) = mats.pushed_by(i, force);
+    column(kick_, i) = mats.kick_of(i, force);
   }
   const double* before = last_kick_ != nullptr ? last_kick_ : kick_.data();
   const auto kick_at = [&](std::size_t mat, double ahead) {
@@ -151,14 +151,14 @@ void ImplicitDamping::add_response(double force) noexcept {
 void ImplicitDamping::find_carried_forces(const MatArray& mats) noexcept {
   std::fill(response_.begin(), response_.end(), 0.0);
   for (std::uint32_t i = 0; i < mass_.size(); ++i) {
-    if (mass_[i] > 0.0) column(response_, i) = mass_[i] * mats.pushed_by(i, mats.force(i));
+    if (mass_[i] > 0.0) column(response_, i) = mass_[i] * mats.kick_of(i, mats.force(i));
   }
   matrix_.solve(response_.data());
   for (std::size_t i = 0; i < mass_.size(); ++i) column(response_, i) *= mass_[i];
   matrix_.solve(response_.data());
   for (std::uint32_t i = 0; i < mass_.size(); ++i) {
     if (mass_[i] == 0.0) continue;
-    column(response_, i) = mass_[i] * (mats.pushed_by(i, mats.force(i)) - column(response_, i));
+    column(response_, i) = mass_[i] * (mats.kick_of(i, mats.force(i)) - column(response_, i));
   }
 }
 
@@ -189,8 +189,7 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
       continue;
     }
     column(drag_, i) += medium_viscosity_[i] * column(middle_, i);
-    const Vec3 end =
-        begin + (part * mats.pushed_by(i, mats.force(i)) - column(drag_, i) / mass_[i]);
+    const Vec3 end = begin + (part * mats.kick_of(i, mats.force(i)) - column(drag_, i) / mass_[i]);
     const double energy_at_begin = mass_[i] * dot(begin, begin);
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
     if (first) work.dissipated += 0.25 * dot(end - begin, column(response_, i));

@@ -28,7 +28,7 @@ ImplicitEuler::ImplicitEuler(const NetworkDescription& network)
 void ImplicitEuler::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   world.add_frozen_forces(mats.force_columns());
-  world.outside.start(mats);
+  world.port_inputs.start(mats);
   mats.clear_forces(*world.team);
   mats.set_forces_are_present(true);
   mats.find_displacements(before_);
@@ -53,9 +53,9 @@ double ImplicitEuler::loss_of_creep(const WorldState& world) noexcept {
 /// Ports feel the force that is solved for, and PortInputs counts that of the beginning. `change_` being dt (v+ - v).
 /// @return energy [J]
 double ImplicitEuler::work_of_change_at_ports(const WorldState& world) noexcept {
-  if (world.outside.ports().empty()) return 0.0;
+  if (world.port_inputs.ports().empty()) return 0.0;
   std::fill(carried_.begin(), carried_.end(), 0.0);
-  for (const std::uint32_t port : world.outside.ports()) {
+  for (const std::uint32_t port : world.port_inputs.ports()) {
     column(carried_, port) = column(before_, port);
   }
   return half_loss(world, matrix_.viscous_product(world.mats, change_.data(), carried_.data()));
@@ -73,7 +73,7 @@ Moved ImplicitEuler::step(WorldState& world) noexcept {
   if (started_) {
     energy.dissipated += half_loss(world, matrix_.turned_product(mats, before_.data()));
   }
-  take_half(mats.find_push_in_medium(before_, change_), energy);
+  take_half(mats.find_kick_in_medium(before_, change_), energy);
   matrix_.assemble(mats);
   matrix_.subtract_stiffness_times(mats, before_.data(), change_.data());
   matrix_.solve(change_.data());
@@ -83,8 +83,8 @@ Moved ImplicitEuler::step(WorldState& world) noexcept {
   if (world.step_count < kStepsOfStart) pending_.dissipated += loss_of_creep(world);
   for (std::size_t i = 0; i < change_.size(); ++i) change_[i] += before_[i];
   moved.non_finite_mats = mats.move_by(change_);
-  pending_.port_work += world.outside.release(mats);
-  pending_.port_work += world.outside.drive_to(world.step_count + 1, mats);
+  pending_.port_work += world.port_inputs.release(mats);
+  pending_.port_work += world.port_inputs.drive_to(world.step_count + 1, mats);
   end_step(world);
   return moved;
 }

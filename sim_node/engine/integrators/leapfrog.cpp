@@ -25,11 +25,11 @@ void Leapfrog::start(WorldState& world) noexcept {
   }
   world.add_frozen_forces(mats.force_columns());  // the delayed positions are x0 - dt v0
   for (std::uint32_t i = 0; i < mats.count(); ++i) set_extrapolated(i, mats.delayed(i));
-  world.outside.start(mats);
+  world.port_inputs.start(mats);
   if (damping_) {
     mats.clear_forces(*world.team);
   } else {
-    world.outside.kick(mats);  // what drives push with is known from the start
+    world.port_inputs.kick(mats);  // what drives push with is known from the start
     mats.start();
   }
   mats.set_forces_are_present(true);
@@ -59,8 +59,8 @@ Moved Leapfrog::step(WorldState& world) noexcept {
     moved.non_finite_mats = advance.non_finite_mats;
     take_half(0.5 * advance.medium_work, energy);
   }
-  pending_.port_work += world.outside.release(mats);
-  pending_.port_work += world.outside.drive_to(world.step_count + 1, mats);
+  pending_.port_work += world.port_inputs.release(mats);
+  pending_.port_work += world.port_inputs.drive_to(world.step_count + 1, mats);
   if (damping_) mats.add_forces(damping_->force());
   end_step(world);
   return moved;
@@ -89,11 +89,11 @@ void Leapfrog::adopt(WorldState& world) noexcept {
 /// What a port does is given from outside: it is extrapolated as it has moved in the last period. Of a
 /// driven one the next place is known, and so its velocity to second order.
 void Leapfrog::feel_ports(const WorldState& world) noexcept {
-  for (const std::uint32_t port : world.outside.ports()) {
+  for (const std::uint32_t port : world.port_inputs.ports()) {
     const Vec3 delayed = world.mats.delayed(port);
     set_extrapolated(port, delayed);
     if (!world.mats.is_driven(port)) continue;
-    const Vec3 next = world.outside.driven_place(port, world.step_count + 1);
+    const Vec3 next = world.port_inputs.driven_place(port, world.step_count + 1);
     if (!next.allFinite()) continue;
     set_extrapolated(port, world.mats.position(port) - 0.5 * (next - delayed));
   }
@@ -105,7 +105,7 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
     const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : extrapolated(i);
     column(velocity_, i) = mats.position(i) - before;
   }
-  for (const std::uint32_t port : world.outside.ports()) {
+  for (const std::uint32_t port : world.port_inputs.ports()) {
     column(velocity_, port) = mats.position(port) - mats.delayed(port);
   }
   damping_->begin_step(mats, velocity_, has_last_kick() ? last_kick() : nullptr);

@@ -63,7 +63,7 @@ void ModalIntegrator::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   kernel_ = &modal_kernel(world.width);
   world.add_frozen_forces(mats.force_columns());
-  world.outside.kick(mats);  // what drives push with is known from the start
+  world.port_inputs.kick(mats);  // what drives push with is known from the start
   block_.start(world.description(), mats.force_columns().force);
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
     if (is_mass_[i] != 0) {
@@ -84,17 +84,17 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
   StepEnergy& energy = moved.energy;
-  for (std::size_t i = 0; i < world.outside.held_count(); ++i) {
-    const std::uint32_t mat = world.outside.held_mat(i);
+  for (std::size_t i = 0; i < world.port_inputs.held_count(); ++i) {
+    const std::uint32_t mat = world.port_inputs.held_mat(i);
     if (is_driven_[mat] != 0) continue;
     show(world, mat);
     drive(mat);
   }
-  energy.port_work = world.outside.move_ports(mats);
+  energy.port_work = world.port_inputs.move_ports(mats);
   for (const std::uint32_t mat : ends_) mats.set_force(mat, Vec3::Zero());
   world.add_forces_at_half_step(energy);
-  energy.port_work += world.outside.work_at_ports(mats);
-  energy.port_work += world.outside.kick(mats);
+  energy.port_work += world.port_inputs.work_at_ports(mats);
+  energy.port_work += world.port_inputs.kick(mats);
 
   for (std::size_t k = 0; k < driven_.size(); ++k) {
     drives_[k].force = mats.force(driven_[k]).x();
@@ -112,8 +112,8 @@ Moved ModalIntegrator::step(WorldState& world) noexcept {
     mats.move_port(mat, Vec3(next, 0.0, 0.0));
     if (!std::isfinite(next)) ++moved.non_finite_mats;
   }
-  energy.port_work += world.outside.release(mats);
-  energy.port_work += world.outside.drive_to(world.step_count + 1, mats);
+  energy.port_work += world.port_inputs.release(mats);
+  energy.port_work += world.port_inputs.drive_to(world.step_count + 1, mats);
   return moved;
 }
 
@@ -166,8 +166,8 @@ void ModalIntegrator::restored(WorldState& world) noexcept {
   driven_.erase(driven_.begin() + own_driven_, driven_.end());
   drives_.erase(drives_.begin() + own_driven_, drives_.end());
   for (const std::uint32_t mat : driven_) is_driven_[mat] = 0;
-  for (std::size_t i = 0; i < world.outside.held_count(); ++i) {
-    const std::uint32_t mat = world.outside.held_mat(i);
+  for (std::size_t i = 0; i < world.port_inputs.held_count(); ++i) {
+    const std::uint32_t mat = world.port_inputs.held_mat(i);
     if (is_driven_[mat] == 0) continue;
     is_driven_[mat] = 0;
     drive(mat);

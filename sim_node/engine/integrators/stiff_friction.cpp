@@ -129,11 +129,11 @@ struct Bracket {
 /// falls can have it, in ever longer strides, then farther.
 bool find_bracket(TensionOverSpeed& curve, double begin, double at_begin, double half_mobility,
                   double free_speed, Bracket& bracket) noexcept {
-  constexpr int kLooks = 4;
+  constexpr int kIterations = 4;
   constexpr double kStride = 4.0;
   bracket = {begin, begin, at_begin, at_begin};
   double far = -at_begin;
-  for (int look = 0; look < kLooks; ++look) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
     std::array<double, TensionOverSpeed::kCount> speeds{};
     double reach = far;
     for (std::size_t i = speeds.size(); i-- > 0; reach /= kStride) speeds[i] = begin + reach;
@@ -156,11 +156,11 @@ bool find_bracket(TensionOverSpeed& curve, double begin, double at_begin, double
 /// Narrows it down to rounding; a jump of the law as well as a smooth place.
 double find_root(TensionOverSpeed& curve, double half_mobility, double free_speed,
                  Bracket bracket) noexcept {
-  constexpr int kMaxLooks = 40;  // each takes three quarters away, where it finds no better
+  constexpr int kMaxIterations = 40;  // each takes three quarters away, where it finds no better
   constexpr double kNear = 1.0 / (1 << 13);
   constexpr double kNearest = kNear * kNear;
   const double rounding = 1e-15 * (std::abs(free_speed) + std::abs(bracket.high));
-  for (int look = 0; look < kMaxLooks && bracket.at_high != 0.0; ++look) {
+  for (int iteration = 0; iteration < kMaxIterations && bracket.at_high != 0.0; ++iteration) {
     const double width = bracket.high - bracket.low;
     if (!(std::abs(width) > rounding)) break;
     const double guess = bracket.secant();
@@ -282,10 +282,10 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
   const auto moved = [&](std::uint32_t mat) {
     Vec3 moving = world.mats.position(mat) - world.mats.delayed(mat);
     if (!world.mats.is_mass(mat)) return moving;
-    Vec3 force = world.mats.force(mat) + world.outside.external_force(mat);
+    Vec3 force = world.mats.force(mat) + world.port_inputs.external_force(mat);
     force += world.mats.force_of_medium(
         mat, world.mats.layout().vector(around.extrapolated.data(), mat));
-    moving += part * world.mats.pushed_by(mat, force);
+    moving += part * world.mats.kick_of(mat, force);
     return moving;
   };
   const double speed = solved.axis.dot(moved(ends.mat_b) - moved(ends.mat_a)) / dt_;
@@ -314,7 +314,7 @@ double StiffFriction::solve_one(const WorldState& world, const Solved& solved, d
 /// Counts the tensions as constant over the period, and finds the velocities with them.
 void StiffFriction::find_damped_velocities(WorldState& world, ImplicitDamping& damping) noexcept {
   add_to(damping, world, 1.0);
-  damping.find_velocities(world.mats, &world.outside);
+  damping.find_velocities(world.mats, &world.port_inputs);
   add_to(damping, world, -1.0);
 }
 

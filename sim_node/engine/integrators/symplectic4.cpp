@@ -10,7 +10,7 @@
 namespace cordis::engine {
 namespace {
 
-// Parts of a period: push, drift, push, ... ; the second half runs backward.
+// Parts of a period: kick, drift, kick, ... ; the second half runs backward.
 constexpr double kKick1 = 0.0829844064174052;
 constexpr double kKick2 = 0.396309801498368;
 constexpr double kKick3 = -0.0390563049223486;
@@ -21,7 +21,7 @@ constexpr double kDrift3 = 0.5 - (kDrift1 + kDrift2);
 
 struct Stage {
   double kick;
-  double drift;  // at the velocity after the push
+  double drift;  // at the velocity after the kick
 };
 constexpr std::array<Stage, 6> kStages{{{kKick1, kDrift1},
                                         {kKick2, kDrift2},
@@ -67,15 +67,15 @@ void Symplectic4::adopt(WorldState& world) noexcept {
 Moved Symplectic4::step(WorldState& world) noexcept {
   MatArray& mats = world.mats;
   Moved moved;
-  if (world.outside.held_count() > 0) mats.delay();  // for the work of the held forces
+  if (world.port_inputs.held_count() > 0) mats.delay();  // for the work of the held forces
   for (const Stage& stage : kStages) {
-    world.outside.kick(mats);
+    world.port_inputs.kick(mats);
     mats.kick_and_drift(world.kernel, stage.kick, stage.drift, velocity_);
     add_forces(world);
   }
-  world.outside.kick(mats);
+  world.port_inputs.kick(mats);
   mats.kick(world.kernel, kKick1, velocity_);
-  moved.energy.port_work = 2.0 * world.outside.release(mats);  // over the way from x(n)
+  moved.energy.port_work = 2.0 * world.port_inputs.release(mats);  // over the way from x(n)
   moved.non_finite_mats = mats.delay_by(world.kernel, velocity_);
   return moved;
 }

@@ -81,7 +81,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       bends(description()),
       sets(description(), table, pair_kernel(width)),
       log(table, std::max(kMinEventRoom, description().state_links.size())),
-      outside(description()),
+      port_inputs(description()),
       freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
                                                     : nullptr),
       scheme(make_integrator(description())) {}
@@ -95,16 +95,16 @@ StateTable WorldState::make_table(std::vector<StateMachine> from) const {
 
 StepReport WorldState::step() noexcept {
   StepReport report;
-  report.refused_inputs = outside.take_refused();
+  report.refused_inputs = port_inputs.take_refused();
   log.begin_step();
-  outside.push_at(step_count);
+  port_inputs.find_driven_forces(step_count);
   sets.forget_partners();
   const Moved moved = scheme->step(*this);
   std::construct_at(&positions, mats.position());
   account.add(moved.energy);
   ++step_count;
-  report.refused_drives = outside.take_refused_drives();
-  report.drive_jumps = outside.take_drive_jumps();
+  report.refused_drives = port_inputs.take_refused_drives();
+  report.drive_jumps = port_inputs.take_drive_jumps();
   report.non_finite_mats = moved.non_finite_mats;
   report.has_energy = account.is_finite();
   report.overflowed_sets = sets.overflowed_count();
@@ -128,7 +128,7 @@ void WorldState::start_one_period_ago() noexcept {
   one_period_ago.position = one_period_ago.delayed;
   maxwell_links.go_back(mats);
   add_frozen_forces(one_period_ago);
-  outside.start(mats);
+  port_inputs.start(mats);
   mats.clear_forces(*team);
   links.start();
   vector_springs.start();
@@ -283,7 +283,7 @@ Archive WorldState::serialize(Archive archive) {
   scheme->serialize(archive);
   if (freezing) freezing->serialize(archive);
   if (!archive.hashes()) sets.serialize(archive, table);
-  outside.serialize(archive);
+  port_inputs.serialize(archive);
   return archive;
 }
 
@@ -291,7 +291,7 @@ void WorldState::take(std::span<const double> row) {
   CORDIS_ASSERT(matches(row));
   serialize(Archive::restoring(row));
   scheme->restored(*this);
-  if (freezing) freezing->restored(outside);
+  if (freezing) freezing->restored(port_inputs);
   sets.make_room(mats.force_columns().position);
 }
 
@@ -328,7 +328,7 @@ void WorldState::restore_with_table(const Snapshot& snapshot) {
     swap_table(table_of_snapshot, links_of_snapshot);
     Archive restoring = Archive::restoring(own_sets);
     sets.serialize(restoring, table);
-    if (freezing) freezing->restored(outside);
+    if (freezing) freezing->restored(port_inputs);
     throw std::invalid_argument(kNotOfThisState);
   }
   if (freezing) freezing->adopt(description(), table.state_machines());

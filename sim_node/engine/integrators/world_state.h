@@ -127,7 +127,7 @@ struct WorldState {
   BendArray bends;
   SetLiaisons sets;
   EventLog log;
-  PortInputs outside;
+  PortInputs port_inputs;
   EnergyAccount account;
   std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
   std::unique_ptr<Integrator> scheme;

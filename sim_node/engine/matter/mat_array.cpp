@@ -69,29 +69,29 @@ void MatArray::start() noexcept {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const auto mat = static_cast<std::uint32_t>(i);
       const Vec3 before = moved(mat);  // v0 dt
-      const Vec3 pushed =              // a0 dt^2
+      const Vec3 kick =                // a0 dt^2
           kick_at_half_step(mat) - (1.0 - velocity_retention_[i]) * before;
-      set(delayed_, i, position(mat) - (before - 0.5 * pushed));
-      if (!moved_.empty()) set(moved_, i, before - 0.5 * pushed);
+      set(delayed_, i, position(mat) - (before - 0.5 * kick));
+      if (!moved_.empty()) set(moved_, i, before - 0.5 * kick);
     }
   }
   std::fill(force_.begin(), force_.end(), 0.0);
 }
 
 Vec3 MatArray::velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept {
-  const Vec3 pushed = pushed_by(mat, force(mat) + external_force);
+  const Vec3 kick = kick_of(mat, force(mat) + external_force);
   const double retention = velocity_retention_[mat];
-  if (retention == 1.0 || retention == 0.0) return pushed;
+  if (retention == 1.0 || retention == 0.0) return kick;
   const Vec3 moved = position(mat) - delayed(mat);
-  return moved - (moved - pushed) / retention;
+  return moved - (moved - kick) / retention;
 }
 
 Vec3 MatArray::next_velocity_increment(std::uint32_t mat,
                                        const Vec3& external_force) const noexcept {
-  const Vec3 pushed = pushed_by(mat, force(mat) + external_force);
+  const Vec3 kick = kick_of(mat, force(mat) + external_force);
   const double retention = velocity_retention_[mat];
-  if (retention == 1.0 || retention == 0.0) return pushed;
-  return pushed - (1.0 - retention) * moved(mat);
+  if (retention == 1.0 || retention == 0.0) return kick;
+  return kick - (1.0 - retention) * moved(mat);
 }
 
 /// Calls use(first, last) for MATs [first, last), whole blocks: the members of the team share all of them.
@@ -287,7 +287,7 @@ void MatArray::find_displacements(AlignedVector<double>& displacement) const noe
   }
 }
 
-double MatArray::find_push_in_medium(const AlignedVector<double>& displacement,
+double MatArray::find_kick_in_medium(const AlignedVector<double>& displacement,
                                      AlignedVector<double>& kick) const noexcept {
   double taken = 0.0;
   std::fill(kick.begin(), kick.end(), 0.0);

@@ -62,7 +62,7 @@ class MatArray {
   /// From now on only these rows of masses are moved; at first all masses are.
   void move_only(std::span<const Range> rows) noexcept;
   /// What forces and gravity add to the displacement of a mass in this period [m].
-  Vec3 kick_at_half_step(std::uint32_t mat) const noexcept { return pushed_by(mat, force(mat)); }
+  Vec3 kick_at_half_step(std::uint32_t mat) const noexcept { return kick_of(mat, force(mat)); }
   /// dt times the change of velocity that the last forces, the medium and this force from outside have
   /// made of a mass that has moved since [m].
   Vec3 velocity_increment(std::uint32_t mat, const Vec3& external_force) const noexcept;
@@ -103,10 +103,10 @@ class MatArray {
   void find_displacements(AlignedVector<double>& displacement) const noexcept;
   /// dt^2 times the forces and weights of the masses, and what the medium takes of these
   /// displacements, 4 x N [kg m]. @return half of what it takes in a period [J]
-  double find_push_in_medium(const AlignedVector<double>& displacement,
+  double find_kick_in_medium(const AlignedVector<double>& displacement,
                              AlignedVector<double>& kick) const noexcept;
   /// What a force and gravity add to the way of a mass in a period [m].
-  Vec3 pushed_by(std::uint32_t mat, const Vec3& force) const noexcept {
+  Vec3 kick_of(std::uint32_t mat, const Vec3& force) const noexcept {
     return dt2_over_mass_[mat] * force + weight_step(mat);
   }
   /// What the medium does to a mass at x(n) - dt v(n) [N].

@@ -32,21 +32,21 @@ PortInputs::PortInputs(const NetworkDescription& description)
   forces_.reserve(description.mass_count());
   function_value_.resize(description.time_functions.size(), Vec3::Zero());
   for (const Drive& drive : description.drives) {
-    (drive.is_force ? pushing_functions_ : moving_functions_).push_back(drive.function);
+    (drive.is_force ? force_functions_ : moving_functions_).push_back(drive.function);
     if (!drive.is_force) {
       ports_[slot_[drive.mat]].drive = &drive;
-    } else if (pushes_.empty() || pushes_.back().mat != drive.mat) {
-      pushes_.push_back({drive.mat, {&drive, 1}});
+    } else if (driven_forces_.empty() || driven_forces_.back().mat != drive.mat) {
+      driven_forces_.push_back({drive.mat, {&drive, 1}});
     } else {
-      Push& push = pushes_.back();
-      push.drives = {push.drives.data(), push.drives.size() + 1};
+      DrivenForce& driven = driven_forces_.back();
+      driven.drives = {driven.drives.data(), driven.drives.size() + 1};
     }
   }
-  for (auto* functions : {&moving_functions_, &pushing_functions_}) {
+  for (auto* functions : {&moving_functions_, &force_functions_}) {
     std::ranges::sort(*functions);
     functions->erase(std::unique(functions->begin(), functions->end()), functions->end());
   }
-  push_at(0);
+  find_driven_forces(0);
 }
 
 void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
@@ -80,13 +80,13 @@ Vec3 PortInputs::external_force(std::uint32_t mat) const noexcept {
   CORDIS_ASSERT(mat < slot_.size());
   const bool is_held = slot_[mat] != kNoSlot && !is_port(mat);
   const Vec3 held = is_held ? forces_[slot_[mat]].force : Vec3(Vec3::Zero());
-  const Push* push = push_on(mat);
-  return push != nullptr ? Vec3(held + push->force) : held;
+  const DrivenForce* driven = driven_force_on(mat);
+  return driven != nullptr ? Vec3(held + driven->force) : held;
 }
 
-const PortInputs::Push* PortInputs::push_on(std::uint32_t mat) const noexcept {
-  const auto found = std::ranges::lower_bound(pushes_, mat, {}, &Push::mat);
-  return found != pushes_.end() && found->mat == mat ? &*found : nullptr;
+const PortInputs::DrivenForce* PortInputs::driven_force_on(std::uint32_t mat) const noexcept {
+  const auto found = std::ranges::lower_bound(driven_forces_, mat, {}, &DrivenForce::mat);
+  return found != driven_forces_.end() && found->mat == mat ? &*found : nullptr;
 }
 
 std::uint32_t PortInputs::take_refused() noexcept {
@@ -118,14 +118,14 @@ void PortInputs::find_values(const std::vector<std::uint32_t>& functions,
   }
 }
 
-void PortInputs::push_at(std::uint64_t step) noexcept {
-  find_values(pushing_functions_, step);
-  for (Push& push : pushes_) {
-    Vec3 force = placed(push.drives.front(), function_value_[push.drives.front().function]);
-    for (const Drive& drive : push.drives.subspan(1))
+void PortInputs::find_driven_forces(std::uint64_t step) noexcept {
+  find_values(force_functions_, step);
+  for (DrivenForce& driven : driven_forces_) {
+    Vec3 force = placed(driven.drives.front(), function_value_[driven.drives.front().function]);
+    for (const Drive& drive : driven.drives.subspan(1))
       force += placed(drive, function_value_[drive.function]);
     if (!force.allFinite()) ++refused_drives_;
-    push.force = force.allFinite() ? force : Vec3(Vec3::Zero());
+    driven.force = force.allFinite() ? force : Vec3(Vec3::Zero());
   }
 }
 
@@ -189,21 +189,21 @@ double PortInputs::kick(MatArray& mats) noexcept {
     mats.set_force(held.mat, held.link_force + held.force);
     work += 0.5 * held.force.dot(mats.position(held.mat) - mats.delayed(held.mat));
   }
-  for (Push& push : pushes_) {
-    const std::uint32_t mat = push.mat;
-    push.link_force = mats.force(mat);
-    mats.set_force(mat, push.link_force + push.force);
-    work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
+  for (DrivenForce& driven : driven_forces_) {
+    const std::uint32_t mat = driven.mat;
+    driven.link_force = mats.force(mat);
+    mats.set_force(mat, driven.link_force + driven.force);
+    work += 0.5 * driven.force.dot(mats.position(mat) - mats.delayed(mat));
   }
   return work;
 }
 
 double PortInputs::release(MatArray& mats) const noexcept {
   double work = 0.0;
-  for (const Push& push : pushes_) {
-    const std::uint32_t mat = push.mat;
-    mats.set_force(mat, push.link_force);
-    work += 0.5 * push.force.dot(mats.position(mat) - mats.delayed(mat));
+  for (const DrivenForce& driven : driven_forces_) {
+    const std::uint32_t mat = driven.mat;
+    mats.set_force(mat, driven.link_force);
+    work += 0.5 * driven.force.dot(mats.position(mat) - mats.delayed(mat));
   }
   for (const HeldForce& held : forces_) {
     mats.set_force(held.mat, held.link_force);
@@ -217,7 +217,7 @@ void PortInputs::serialize(Archive& archive) {
     engine::serialize(archive, port.next);
     engine::serialize(archive, port.link_force);
   }
-  for (Push& push : pushes_) engine::serialize(archive, push.force);
+  for (DrivenForce& driven : driven_forces_) engine::serialize(archive, driven.force);
   archive.whole(refused_, [](std::uint32_t) { return true; });
   std::size_t held_count = forces_.size();
   held_count = archive.count(held_count, forces_.capacity());

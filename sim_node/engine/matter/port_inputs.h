@@ -38,7 +38,7 @@ class PortInputs {
   /// is done with the MATs.
   void begin(MatArray& mats) noexcept;
   /// The forces that drives put on masses in a step. Real time: O(drives), no allocation.
-  void push_at(std::uint64_t step) noexcept;
+  void find_driven_forces(std::uint64_t step) noexcept;
   /// Where a driven port is at a step [m]; perhaps no finite numbers. Real time: as of value_at().
   Vec3 driven_place(std::uint32_t mat, std::uint64_t step) const noexcept;
   /// Moves the driven ports to a step, after the masses. @return half of the work [J] they do over the new
@@ -80,7 +80,7 @@ class PortInputs {
     Vec3 link_force = Vec3::Zero();  // of the last step [N]
     const Drive* drive = nullptr;    // of the network; none: moved from outside
   };
-  struct Push {
+  struct DrivenForce {
     std::uint32_t mat;
     std::span<const Drive> drives;   // of the network, whose forces add up
     Vec3 force = Vec3::Zero();       // [N]
@@ -99,7 +99,7 @@ class PortInputs {
     return static_cast<double>(step) * network_.step;
   }
   void find_values(const std::vector<std::uint32_t>& functions, std::uint64_t step) noexcept;
-  const Push* push_on(std::uint32_t mat) const noexcept;
+  const DrivenForce* driven_force_on(std::uint32_t mat) const noexcept;
 
   const NetworkDescription& network_;
   int dimension_;
@@ -109,11 +109,11 @@ class PortInputs {
   std::vector<HeldForce> forces_;    // in the order in which the masses were first given one; room
                                      // for all masses
   std::vector<std::uint32_t> slot_;  // by MAT: its place in ports_ or forces_
-  std::vector<Push> pushes_;         // in MAT order
+  std::vector<DrivenForce> driven_forces_;  // in MAT order
   std::uint32_t refused_ = 0;
-  std::vector<std::uint32_t> moving_functions_;   // of driven ports, each once
-  std::vector<std::uint32_t> pushing_functions_;  // of pushes_, each once
-  std::vector<Vec3> function_value_;              // of the network's, at the step of the last call
+  std::vector<std::uint32_t> moving_functions_;  // of driven ports, each once
+  std::vector<std::uint32_t> force_functions_;   // of driven_forces_, each once
+  std::vector<Vec3> function_value_;             // of the network's, at the step of the last call
   std::uint32_t refused_drives_ = 0;
   std::uint32_t drive_jumps_ = 0;
 };

@@ -224,11 +224,11 @@ AdvanceResult advance_masses(const MassColumns& masses) noexcept {
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
     const Column moved = Lanes::load_column(masses.moved + 4 * i);
-    const Column pushed =
+    const Column kick =
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
-    Column moving = moved + pushed;
-    if constexpr (kMedium) moving = moved * Lanes::broadcast(masses.velocity_retention[i]) + pushed;
+    Column moving = moved + kick;
+    if constexpr (kMedium) moving = moved * Lanes::broadcast(masses.velocity_retention[i]) + kick;
     const Column next = position + moving;
     if constexpr (kMedium) product = product + moved * (moved + moving);
 
@@ -268,11 +268,11 @@ struct AxisAdvance {
   void step(const MassColumns& masses, std::size_t i, std::size_t part,
             AxisSums<Lanes>& sums) noexcept {
     const Row before = Lanes::load_any(moved + i);
-    const Row pushed = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
-                       Lanes::every(weight_step);
-    Row moving = before + pushed;
+    const Row kick = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
+                     Lanes::every(weight_step);
+    Row moving = before + kick;
     if constexpr (kMedium) {
-      moving = before * Lanes::load_any(masses.velocity_retention + i) + pushed;
+      moving = before * Lanes::load_any(masses.velocity_retention + i) + kick;
       sums.product[part] = sums.product[part] + before * (before + moving);
     }
     const Row next = Lanes::load_any(position + i) + moving;
@@ -283,10 +283,10 @@ struct AxisAdvance {
   /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
   double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
     const double before = moved[i];
-    const double pushed = force[i] * masses.dt2_over_mass[i] + weight_step;
-    double moving = before + pushed;
+    const double kick = force[i] * masses.dt2_over_mass[i] + weight_step;
+    double moving = before + kick;
     if constexpr (kMedium) {
-      moving = before * masses.velocity_retention[i] + pushed;
+      moving = before * masses.velocity_retention[i] + kick;
       in_place = in_place + before * (before + moving);
     }
     const double next = position[i] + moving;
@@ -316,34 +316,34 @@ struct AxisExtrapolation {
             AxisSums<Lanes>& sums) noexcept {
     const Row now = Lanes::load_any(position + i);
     const Row moved = now - Lanes::load_any(delayed + i);
-    Row pushed = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
-                 Lanes::every(weight_step);
+    Row kick = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
+               Lanes::every(weight_step);
     if constexpr (kMedium) {
       const Row seen = now - Lanes::load_any(extrapolated + i);
       const Row retention = Lanes::load_any(masses.velocity_retention + i);
-      pushed = pushed - seen * (Lanes::every(1.0) - retention);
+      kick = kick - seen * (Lanes::every(1.0) - retention);
       sums.product[part] = sums.product[part] + seen * seen;
     }
-    const Row next = now + (moved + pushed);
+    const Row next = now + (moved + kick);
     Lanes::store_any(delayed + i, now);
     Lanes::store_any(position + i, next);
-    Lanes::store_any(extrapolated + i, now - Lanes::every(0.5) * pushed);
+    Lanes::store_any(extrapolated + i, now - Lanes::every(0.5) * kick);
     sums.nonfinite = sums.nonfinite + (next - next);  // NOLINT(misc-redundant-expression)
   }
   /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
   double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
     const double now = position[i];
     const double moved = now - delayed[i];
-    double pushed = force[i] * masses.dt2_over_mass[i] + weight_step;
+    double kick = force[i] * masses.dt2_over_mass[i] + weight_step;
     if constexpr (kMedium) {
       const double seen = now - extrapolated[i];
-      pushed = pushed - seen * (1.0 - masses.velocity_retention[i]);
+      kick = kick - seen * (1.0 - masses.velocity_retention[i]);
       in_place = in_place + seen * seen;
     }
-    const double next = now + (moved + pushed);
+    const double next = now + (moved + kick);
     delayed[i] = now;
     position[i] = next;
-    extrapolated[i] = now - 0.5 * pushed;
+    extrapolated[i] = now - 0.5 * kick;
     return next - next;  // NOLINT(misc-redundant-expression)
   }
 };
@@ -395,20 +395,20 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
     const Column moved = position - Lanes::load_column(masses.delayed + 4 * i);
-    Column pushed =
+    Column kick =
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
     if constexpr (kMedium) {
       const Column seen = position - Lanes::load_column(masses.extrapolated + 4 * i);
-      pushed = pushed - seen * (one - Lanes::broadcast(masses.velocity_retention[i]));
+      kick = kick - seen * (one - Lanes::broadcast(masses.velocity_retention[i]));
       product = product + seen * seen;
     }
-    const Column moving = moved + pushed;
+    const Column moving = moved + kick;
     const Column next = position + moving;
 
     Lanes::store_column(masses.delayed + 4 * i, position);
     Lanes::store_column(masses.position + 4 * i, next);
-    Lanes::store_column(masses.extrapolated + 4 * i, position - half * pushed);
+    Lanes::store_column(masses.extrapolated + 4 * i, position - half * kick);
     // 0 for finite values, else NaN
     nonfinite = Lanes::unite(nonfinite, next - next);  // NOLINT(misc-redundant-expression)
   }
@@ -424,10 +424,10 @@ void kick_masses(const MassColumns& masses, const KickColumns& by) noexcept {
   const Column none = Lanes::broadcast(0.0);
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
-    const Column pushed =
+    const Column displacement =
         Lanes::broadcast(masses.dt2_over_mass[i]) * Lanes::load_column(masses.force + 4 * i) +
         weight_step;
-    const Column velocity = Lanes::load_column(by.velocity + 4 * i) + kick * pushed;
+    const Column velocity = Lanes::load_column(by.velocity + 4 * i) + kick * displacement;
     Lanes::store_column(by.velocity + 4 * i, velocity);
     if constexpr (kDrifts) {
       const Column position = Lanes::load_column(masses.position + 4 * i);

@@ -644,7 +644,7 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
                              count, values_from(first), sum);
       });
   measure_surfaces(columns.position, column_, /*may_leave=*/true);
-  // Those that are new here have had no force.
+  // A ball that is new here has had no force.
   if (surfaces_changed_) visit_with_forces([&](std::size_t m) { take_position(m, columns); });
   return energy_of(sum);
 }
@@ -779,7 +779,7 @@ void SetPairs::add_potential(const StateTable& table, StateIndex state, std::siz
                              Potential& sum) const noexcept {
   const EndMasses mass = state_machines_.masses_of(a, b);
   sum.stored += table.stored_energy(state, distance, rest_length, mass);
-  // That of Lennard-Jones is 0 far away.
+  // The potential of Lennard-Jones is 0 far away.
   if (path_ == Path::kLennardJones) return;
   sum.at_range +=
       table.stored_energy(state_machines_.start_state(), range_, rest().length(a, b), mass);

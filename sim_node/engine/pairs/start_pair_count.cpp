@@ -23,8 +23,8 @@ StartPairCount count_at_surfaces(const NetworkDescription& network, const SetLia
       const SurfaceDistance from = distance_from(surface, network.mats[of_surface].position, place);
       if (from.distance < set.range && !from.is_beyond) ++count.in_range;
     }
-    count.looked_at += set.set_q.size();
-    if (count.in_range > limits.in_range || count.looked_at > limits.looked_at) break;
+    count.examined += set.set_q.size();
+    if (count.in_range > limits.in_range || count.examined > limits.examined) break;
   }
   return count;
 }
@@ -60,10 +60,10 @@ StartPairCount count_start_pairs(const NetworkDescription& network, const SetLia
     const CellGrid::NeighbourCells around = grid.around(point, last);
     for (std::size_t r = 0; r < around.count; ++r) {
       const CellGrid::Run run = around.runs[r];
-      count.looked_at += run.end - run.begin;
+      count.examined += run.end - run.begin;
       count.in_range += kernel.find_near(table, run.begin, run.end, query, found.data());
     }
-    if (count.in_range > limits.in_range || count.looked_at > limits.looked_at) break;
+    if (count.in_range > limits.in_range || count.examined > limits.examined) break;
   }
   return count;
 }

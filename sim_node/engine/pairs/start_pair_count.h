@@ -12,7 +12,7 @@ struct StartPairCount {
   std::size_t in_range = 0;
   /// Members in the cells around each other, with the largest skin of a neighbour list: about 44
   /// per pair in range where members are spread evenly in space.
-  std::size_t looked_at = 0;
+  std::size_t examined = 0;
 };
 
 /// Counts until one of the limits is passed.

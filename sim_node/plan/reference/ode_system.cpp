@@ -163,7 +163,7 @@ double OdeSystem::tension(const Joined& joined, const Geometry& link) const {
 void OdeSystem::rate(const Values& values, Values& rate) {
   const std::size_t n = position_count();
   rate.assign(values.size(), 0.0);
-  const auto push = [&](std::uint32_t a, std::uint32_t b, const Vec3& force) {
+  const auto add_pair_force = [&](std::uint32_t a, std::uint32_t b, const Vec3& force) {
     Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(a)) += force;
     Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(b)) -= force;
   };
@@ -173,23 +173,24 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     const Geometry line = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
     if (link.isotropic) {
       const Vec3 along = position(values, link.mat_b) - position(values, link.mat_a);
-      push(link.mat_a, link.mat_b, link.stiffness * along + link.viscosity * line.velocity);
+      add_pair_force(link.mat_a, link.mat_b,
+                     link.stiffness * along + link.viscosity * line.velocity);
       continue;
     }
     const double tension =
         link.stiffness * (line.distance - link.rest_length) + link.viscosity * line.speed;
-    push(link.mat_a, link.mat_b, tension * line.direction);
+    add_pair_force(link.mat_a, link.mat_b, tension * line.direction);
   }
   for (std::uint32_t l = 0; l < states_.size(); ++l) {
     const Joined link = joined(l);
     const Geometry line = geometry(values, link);
-    push(link.mat_a, link.mat_b, tension(link, line) * line.direction);
+    add_pair_force(link.mat_a, link.mat_b, tension(link, line) * line.direction);
   }
   for (std::uint32_t s = 0; s < sets_.size(); ++s) {
     each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
       const Joined link = joined(s, pair, present);
       const Geometry line = geometry(values, link);
-      push(pair.first, pair.second, tension(link, line) * line.direction);
+      add_pair_force(pair.first, pair.second, tension(link, line) * line.direction);
       return true;
     });
   }
@@ -197,7 +198,7 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     const engine::MaxwellLink& link = network_.maxwell_links[l];
     const Geometry line = geometry(values, {link.mat_a, link.mat_b, kNone, kNothing, false});
     const double force = values[2 * n + l];
-    push(link.mat_a, link.mat_b, force * line.direction);
+    add_pair_force(link.mat_a, link.mat_b, force * line.direction);
     rate[2 * n + l] = link.stiffness * (line.speed - force / link.viscosity);
   }
   for (const engine::Bend& bend : network_.bends) {
@@ -211,8 +212,8 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     const double square = network_.dimension == 1 ? 0.0 : w.squaredNorm();
     const Vec3 along = square > 0.0 ? Vec3(w * (w.dot(rate_of_w) / square)) : rate_of_w;
     const Vec3 moment = bend.stiffness * w + bend.viscosity * along;
-    push(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
-    push(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
+    add_pair_force(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
+    add_pair_force(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
   }
   for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
     auto acceleration = Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(i));

@@ -16,11 +16,11 @@ namespace {
 
 using engine::Vec3;
 
-constexpr double kLooser = 100.0;  // than the tolerance, the second reference integrator
-constexpr double kShorter = 0.75;  // its longest step: where that decides, it differs all the same
-constexpr double kParted = 1e-3;   // of the amplitude
-constexpr double kMoved = 1e-6;    // of the amplitude, the start of the third
-constexpr double kFiner = 8.0;     // than the finest trial, where there is no reference integrator
+constexpr double kLooser = 100.0;   // than the tolerance, the second reference integrator
+constexpr double kShorter = 0.75;   // its longest step: where that decides, it differs all the same
+constexpr double kDiverged = 1e-3;  // of the amplitude
+constexpr double kMoved = 1e-6;     // of the amplitude, the start of the third
+constexpr double kFiner = 8.0;      // than the finest trial, where there is no reference integrator
 
 std::vector<std::uint32_t> masses_of(const engine::NetworkDescription& network) {
   std::vector<std::uint32_t> masses;
@@ -164,7 +164,7 @@ double distance_between(const Reference& reference, int sample, const SampledTra
   return std::sqrt(sum / static_cast<double>(reference.masses.size())) / reference.amplitude;
 }
 
-/// The sample from which on a slightly different start has grown to kParted, `samples` when none.
+/// The sample from which on a slightly different start has grown to kDiverged, `samples` when none.
 /// What shears instead, as the phase of an oscillator whose pitch depends on its amplitude, grows
 /// with the time: from the half of a time to the whole twice, under a steady force four times.
 int first_chaotic_sample(const Reference& reference, const SampledTrajectory& second,
@@ -176,7 +176,7 @@ int first_chaotic_sample(const Reference& reference, const SampledTrajectory& se
     const double before = largest.empty() ? kMoved : largest.back();
     largest.push_back(std::max(before, apart));
     const double at_half = sample < 2 ? kMoved : largest[static_cast<std::size_t>(sample / 2)];
-    if (!(apart < kParted) && !(apart < kExponential * at_half)) return sample;
+    if (!(apart < kDiverged) && !(apart < kExponential * at_half)) return sample;
   }
   return samples;
 }
@@ -193,7 +193,7 @@ void hold_against(const SampledTrajectory& second, const SampledTrajectory& thir
         reference.distance(sample, second.position.data() + static_cast<std::size_t>(sample) * 3 *
                                                                 reference.masses.size());
     reference.chaotic = sample == chaotic && chaotic < both;
-    reference.diverged = reference.chaotic || !(apart < kParted);
+    reference.diverged = reference.chaotic || !(apart < kDiverged);
     if (reference.diverged) break;
     sum += apart * apart;
     reference.compared = sample + 1;

@@ -12,9 +12,9 @@ namespace {
 using engine::NetworkDescription;
 using engine::TimeFunction;
 
-/// Calls @p look with moments [s]. No period has them all at one phase.
-template <class Look>
-void at_moments(const NetworkDescription& network, Look look) {
+/// Calls @p visit with moments [s]. No period has them all at one phase.
+template <class Visit>
+void at_moments(const NetworkDescription& network, Visit visit) {
   constexpr double kOver = 10.0;     // [s]
   constexpr double kLatest = 100.0;  // [s]
   constexpr double kGolden = 0.618033988749894848;
@@ -28,10 +28,10 @@ void at_moments(const NetworkDescription& network, Look look) {
   const double steps = std::ceil(kOver / network.step);
   const std::size_t wanted = std::max(kMin, kCount / network.time_functions.size());
   const auto count = static_cast<std::size_t>(std::min(static_cast<double>(wanted), steps));
-  for (std::size_t n = 0; n < count; ++n) look(kOver * uneven(n) / static_cast<double>(count));
+  for (std::size_t n = 0; n < count; ++n) visit(kOver * uneven(n) / static_cast<double>(count));
   const double octaves = std::log2(kLatest / kOver);
   for (std::size_t n = 0; n < kLateCount; ++n) {
-    look(kOver * std::exp2(octaves * uneven(n) / static_cast<double>(kLateCount)));
+    visit(kOver * std::exp2(octaves * uneven(n) / static_cast<double>(kLateCount)));
   }
 }
 

@@ -64,7 +64,7 @@ void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
 double stiffness_across_at(const engine::StateMachine& state_machine, int dimension,
                            const engine::LawPoint& start) {
   if (dimension == 1 || state_machine.is_stateless() || start.distance <= 0.0) return 0.0;
-  return pull_at_start(state_machine, start) / start.distance;
+  return tension_at_start(state_machine, start) / start.distance;
 }
 
 /// One side of a set: its touching pairs, and those beyond.
@@ -85,7 +85,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.bounded = slope.bounded;
   side.variation = slope.variation;
   side.at_start = bounds.at_start;
-  graph.crowds.push_back(side);
+  graph.contacts.push_back(side);
 
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const double touch = engine::touch_distance(state_machine);
@@ -97,7 +97,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
     most = std::min(most, packing_bound(network.dimension, set.range, law.diameter));
   }
   side.neighbours = side.possible;
-  graph.crowds.push_back(std::move(side));
+  graph.contacts.push_back(std::move(side));
 }
 
 /// A pair of a set at a distance, for each two of the lightest and heaviest masses it may have.
@@ -266,9 +266,9 @@ Turning turning_with_sets(const NetworkDescription& network, Reach reach, double
 
 }  // namespace
 
-double largest_of_others(const ContactBound& crowd, const std::vector<double>& values) {
+double largest_of_others(const ContactBound& contact, const std::vector<double>& values) {
   double most = 0.0;
-  for (const std::uint32_t mat : crowd.others) most = std::max(most, values[mat]);
+  for (const std::uint32_t mat : contact.others) most = std::max(most, values[mat]);
   return most;
 }
 

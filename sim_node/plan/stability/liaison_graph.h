@@ -52,14 +52,14 @@ struct ContactBound {
 };
 
 /// The largest of these values, one per MAT, that a neighbour of a member may have; 0 if none.
-double largest_of_others(const ContactBound& crowd, const std::vector<double>& values);
+double largest_of_others(const ContactBound& contact, const std::vector<double>& values);
 
 /// The scalar graph of a network: masses, and between them the largest slopes of all liaisons. Any
 /// tangent, in any pose and any combination of states, is below the Laplacian of this graph.
 struct LiaisonGraph {
   std::vector<double> inverse_mass;  ///< per MAT [1/kg]; 0 for fixed points and port masses
   std::vector<Edge> edges;
-  std::vector<ContactBound> crowds;
+  std::vector<ContactBound> contacts;
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
   bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds

@@ -79,9 +79,9 @@ LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
       edge.viscosity = 0.0;
     }
   }
-  for (ContactBound& crowd : graph.crowds) {
-    crowd.stiffness *= weights.stiffness;
-    crowd.viscosity *= weights.viscosity;
+  for (ContactBound& contact : graph.contacts) {
+    contact.stiffness *= weights.stiffness;
+    contact.viscosity *= weights.viscosity;
   }
   for (double& viscosity : graph.medium_viscosity) viscosity *= weights.link_viscosity;
   return graph;

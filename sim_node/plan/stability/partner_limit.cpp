@@ -28,10 +28,10 @@ class Partners {
         graph_(weighted(graph, limit_weights(network, Limit::kStable))),
         factor_(network.sets.size(), 1.0),
         grows_(network.sets.size(), false) {
-    for (const ContactBound& crowd : graph_.crowds) {
-      needed_.push_back(crowd.neighbours);
-      for (std::size_t m = 0; m < crowd.members.size(); ++m) {
-        if (crowd.neighbours[m] < crowd.possible[m]) grows_[crowd.set] = true;
+    for (const ContactBound& contact : graph_.contacts) {
+      needed_.push_back(contact.neighbours);
+      for (std::size_t m = 0; m < contact.members.size(); ++m) {
+        if (contact.neighbours[m] < contact.possible[m]) grows_[contact.set] = true;
       }
     }
   }
@@ -39,9 +39,9 @@ class Partners {
   /// True if a row bound of the step stays below 4 with these factors, one for each set.
   bool are_stable(const std::vector<double>& factor) {
     for (std::size_t c = 0; c < needed_.size(); ++c) {
-      ContactBound& crowd = graph_.crowds[c];
-      for (std::size_t m = 0; m < crowd.neighbours.size(); ++m) {
-        crowd.neighbours[m] = std::min(crowd.possible[m], factor[crowd.set] * needed_[c][m]);
+      ContactBound& contact = graph_.contacts[c];
+      for (std::size_t m = 0; m < contact.neighbours.size(); ++m) {
+        contact.neighbours[m] = std::min(contact.possible[m], factor[contact.set] * needed_[c][m]);
       }
     }
     return row_weights(graph_, step_).number < kLimit;
@@ -50,8 +50,8 @@ class Partners {
   /// What a row bound goes through.
   double size_of_rows() const {
     double size = static_cast<double>(graph_.edges.size() + graph_.inverse_mass.size());
-    for (const ContactBound& crowd : graph_.crowds) {
-      size += static_cast<double>(crowd.members.size());
+    for (const ContactBound& contact : graph_.contacts) {
+      size += static_cast<double>(contact.members.size());
     }
     return size;
   }
@@ -123,7 +123,7 @@ class Partners {
   LiaisonGraph graph_;
   std::vector<double> factor_;
   std::vector<bool> grows_;
-  std::vector<std::vector<double>> needed_;  // by crowd and member
+  std::vector<std::vector<double>> needed_;  // by contact and member
 };
 
 }  // namespace
@@ -139,22 +139,22 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
     for (double& value : factor) value = std::max(value, 1.0);
   }
   std::vector<PartnerLimit> limits;
-  for (const ContactBound& crowd : graph.crowds) {
-    if (!crowd.counted) continue;
-    if (limits.empty() || limits.back().set != crowd.set) {
-      limits.push_back({crowd.set, crowd.at_start, {}, {}, 0, 0});
+  for (const ContactBound& contact : graph.contacts) {
+    if (!contact.counted) continue;
+    if (limits.empty() || limits.back().set != contact.set) {
+      limits.push_back({contact.set, contact.at_start, {}, {}, 0, 0});
     }
     PartnerLimit& limit = limits.back();
     bool is_first = limit.is_guaranteed();
-    for (std::size_t m = 0; m < crowd.members.size(); ++m) {
+    for (std::size_t m = 0; m < contact.members.size(); ++m) {
       constexpr double kRounding = 1e-9;
-      const double possible = crowd.possible[m];
-      const bool scales = crowd.neighbours[m] < possible;
+      const double possible = contact.possible[m];
+      const bool scales = contact.neighbours[m] < possible;
       const double certified =
-          scales
-              ? std::min(possible, std::floor(factor[crowd.set] * crowd.neighbours[m] + kRounding))
-              : possible;
-      const bool is_mass = network.mats[crowd.members[m]].kind == engine::MatKind::kMass;
+          scales ? std::min(possible,
+                            std::floor(factor[contact.set] * contact.neighbours[m] + kRounding))
+                 : possible;
+      const bool is_mass = network.mats[contact.members[m]].kind == engine::MatKind::kMass;
       const bool guaranteed = certified >= possible || !is_mass;
       limit.certified.push_back(static_cast<std::uint32_t>(certified));
       limit.guaranteed.push_back(guaranteed ? 1 : 0);
@@ -170,11 +170,11 @@ std::vector<PartnerLimit> partner_limits(const NetworkDescription& network,
 
 LiaisonGraph with_certified_partners(LiaisonGraph graph, const std::vector<PartnerLimit>& limits) {
   std::vector<std::size_t> next(limits.size(), 0);
-  for (ContactBound& crowd : graph.crowds) {
-    if (!crowd.counted) continue;
+  for (ContactBound& contact : graph.contacts) {
+    if (!contact.counted) continue;
     for (std::size_t l = 0; l < limits.size(); ++l) {
-      if (limits[l].set != crowd.set) continue;
-      for (double& partners : crowd.neighbours) partners = limits[l].certified[next[l]++];
+      if (limits[l].set != contact.set) continue;
+      for (double& partners : contact.neighbours) partners = limits[l].certified[next[l]++];
     }
   }
   return graph;

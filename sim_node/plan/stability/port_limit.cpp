@@ -172,11 +172,11 @@ std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound) {
     add(edge.mat_a, 1.0, edge.stiffness, edge.viscosity);
     if (edge.mat_b != edge.mat_a) add(edge.mat_b, 1.0, edge.stiffness, edge.viscosity);
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    if (least && !crowd.bounded) continue;
-    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
-      const double count = least ? std::min(1.0, crowd.neighbours[i]) : crowd.neighbours[i];
-      add(crowd.members[i], count, crowd.stiffness, crowd.viscosity);
+  for (const ContactBound& contact : graph.contacts) {
+    if (least && !contact.bounded) continue;
+    for (std::size_t i = 0; i < contact.members.size(); ++i) {
+      const double count = least ? std::min(1.0, contact.neighbours[i]) : contact.neighbours[i];
+      add(contact.members[i], count, contact.stiffness, contact.viscosity);
     }
   }
   for (std::size_t mat = 0; mat < loads.size(); ++mat)

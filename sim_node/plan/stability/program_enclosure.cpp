@@ -397,9 +397,9 @@ class StepSearch {
 
   /// @param line  all but the variable are points
   bool finds_in(LinkBox line) const {
-    constexpr int kMaxLooks = 400;
+    constexpr int kMaxIterations = 400;
     std::vector<Interval> parts{line.*variable_};
-    for (int look = 0; look < kMaxLooks && !parts.empty(); ++look) {
+    for (int iteration = 0; iteration < kMaxIterations && !parts.empty(); ++iteration) {
       const Interval part = parts.back();
       parts.pop_back();
       line.*variable_ = part;

@@ -108,7 +108,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
            far.over_speed <= kSame * near.over_speed;
   };
   box.distance = {turns ? 0.0 : -kFar, kFar};
-  const bool needs_confinement = !stretch.confined && !is_same(steepest_slopes(program, box));
+  const bool needs_subspace = !stretch.confined && !is_same(steepest_slopes(program, box));
   box.speed = {-kFar, kFar};
   const SteepestSlopes far = steepest_slopes(program, box);
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
@@ -130,7 +130,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   if (has_largest) return;
   slope.bounded = false;
   const bool steps_beyond = is_alike_beyond && !stretch.confined;
-  if (needs_confinement || steps_beyond) slope.uncertainty = kConfinesNothing;
+  if (needs_subspace || steps_beyond) slope.uncertainty = kConfinesNothing;
 }
 
 /// What an expression without a largest slope has where it is looked at.
@@ -463,7 +463,7 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
   return tangent;
 }
 
-double pull_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
+double tension_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const double tension =
       state.stiffness * point.elongation + elastic_tension(state.elasticity, point);

@@ -63,6 +63,6 @@ struct Tangent {
 Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
 /// What a liaison pulls with at one point without speed, in the state of its start [N]; 0 where it pushes.
-double pull_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);
+double tension_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
 }  // namespace cordis::plan

@@ -29,13 +29,13 @@ Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
       rows.viscosity[mat] += edge.viscosity * sum;
     }
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    const double most = largest_of_others(crowd, x);
-    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
-      const std::uint32_t mat = crowd.members[i];
-      const double sum = crowd.neighbours[i] * (x[mat] + most);
-      rows.stiffness[mat] += crowd.stiffness * sum;
-      rows.viscosity[mat] += crowd.viscosity * sum;
+  for (const ContactBound& contact : graph.contacts) {
+    const double most = largest_of_others(contact, x);
+    for (std::size_t i = 0; i < contact.members.size(); ++i) {
+      const std::uint32_t mat = contact.members[i];
+      const double sum = contact.neighbours[i] * (x[mat] + most);
+      rows.stiffness[mat] += contact.stiffness * sum;
+      rows.viscosity[mat] += contact.viscosity * sum;
     }
   }
   for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity[i] * x[i];
@@ -56,11 +56,11 @@ std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t m
     if (edge.mat_a != mat && edge.mat_b != mat) continue;
     consider(edge.stiffness, edge.viscosity, edge.liaison);
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    for (std::size_t i = 0; i < crowd.members.size(); ++i) {
-      if (crowd.members[i] != mat) continue;
-      consider(crowd.neighbours[i] * crowd.stiffness, crowd.neighbours[i] * crowd.viscosity,
-               {LiaisonKind::kSet, crowd.set});
+  for (const ContactBound& contact : graph.contacts) {
+    for (std::size_t i = 0; i < contact.members.size(); ++i) {
+      if (contact.members[i] != mat) continue;
+      consider(contact.neighbours[i] * contact.stiffness, contact.neighbours[i] * contact.viscosity,
+               {LiaisonKind::kSet, contact.set});
     }
   }
   return strongest;
@@ -184,10 +184,10 @@ StepBound edge_bound(const LiaisonGraph& graph) {
     const std::uint32_t other = a_is_driven ? edge.mat_b : edge.mat_a;
     consider(driven, sums.stiffness[other], sums.viscosity[other]);
   }
-  for (const ContactBound& crowd : graph.crowds) {
-    const double stiffness = largest_of_others(crowd, sums.stiffness);
-    const double viscosity = largest_of_others(crowd, sums.viscosity);
-    for (const std::uint32_t mat : crowd.members) consider(mat, stiffness, viscosity);
+  for (const ContactBound& contact : graph.contacts) {
+    const double stiffness = largest_of_others(contact, sums.stiffness);
+    const double viscosity = largest_of_others(contact, sums.viscosity);
+    for (const std::uint32_t mat : contact.members) consider(mat, stiffness, viscosity);
   }
   bound.liaison = strongest_at(graph, bound.mat, bound.step);
   return bound;

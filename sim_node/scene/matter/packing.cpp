@@ -18,7 +18,7 @@ constexpr int kMaxRounds = 3000;
 constexpr double kMaxPushes =
     4.0e9 / kLimitDivisor;                // looks at a pair, of all rounds together: some 40 s
 constexpr std::size_t kManyBalls = 1000;  // the shape of the region counts little
-constexpr int kRoundsBetweenLooks = 100;
+constexpr int kRoundsBetweenChecks = 100;
 constexpr double kJammed = 0.82;   // of the overlap is left between two looks; where balls settle,
                                    // at most 0.75 (measured, from 900 to 9,000 balls)
 constexpr int kPlainRounds = 300;  // most packings have settled by then
@@ -150,7 +150,7 @@ class Packing {
       pushes += static_cast<double>(pairs_.size());
       if (has_moved_far()) list_pairs();
       if (none_overlap()) return true;
-      if (points_.size() < kManyBalls || rounds_ % kRoundsBetweenLooks != 0) continue;
+      if (points_.size() < kManyBalls || rounds_ % kRoundsBetweenChecks != 0) continue;
       const double now = overlap();
       if (now > kJammed * before) return false;
       before = rounds_ == kPlainRounds ? std::numeric_limits<double>::infinity() : now;

@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxSetMembers = 2'000'000 / kLimitDivisor;  ///< i
 inline constexpr std::size_t kMaxSetSurfaces = 10'000 / kLimitDivisor;    ///< likewise
 inline constexpr std::size_t kMaxSetPairs =
     8'000'000 / kLimitDivisor;  ///< in range at the start, of all sets
-inline constexpr std::size_t kMaxSetLooks = 64 * kMaxSetPairs;  ///< StartPairCount::looked_at
+inline constexpr std::size_t kMaxExaminedPairs = 64 * kMaxSetPairs;  ///< StartPairCount::examined
 inline constexpr std::size_t kMaxPartUses =
     100'000 / kLimitDivisor;                       ///< most uses in a scene, each copy for itself
 inline constexpr std::size_t kMaxPartLevels = 64;  ///< deepest level of parts within each other
@@ -117,7 +117,7 @@ struct Assembly {
   std::size_t set_members = 0;
   std::size_t set_surfaces = 0;
   std::size_t set_pairs = 0;
-  std::size_t set_looks = 0;
+  std::size_t examined_pairs = 0;
   bool is_full = false;                             ///< no more matter and links are read
   std::vector<std::uint32_t> ports_without_layout;  ///< MATs of a 1-D scene
 

@@ -122,10 +122,10 @@ bool count_set(Assembly& assembly, const LinkEntry& entry, const engine::SetLiai
   }
   const engine::StartPairCount pairs = engine::count_start_pairs(
       assembly.scene.network, set,
-      {kMaxSetPairs - assembly.set_pairs, kMaxSetLooks - assembly.set_looks});
+      {kMaxSetPairs - assembly.set_pairs, kMaxExaminedPairs - assembly.examined_pairs});
   assembly.set_pairs += pairs.in_range;
-  assembly.set_looks += pairs.looked_at;
-  if (assembly.set_pairs > kMaxSetPairs || assembly.set_looks > kMaxSetLooks) {
+  assembly.examined_pairs += pairs.examined;
+  if (assembly.set_pairs > kMaxSetPairs || assembly.examined_pairs > kMaxExaminedPairs) {
     assembly.refuse_more(place,
                          "the sets of the scene have more than " + std::to_string(kMaxSetPairs) +
                              " pairs of MATs in or near their range at the start",
