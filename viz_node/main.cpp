@@ -15,7 +15,7 @@
 #include "node/stop.h"
 #include "node/time.h"
 #include "viz_node/command_relay.h"
-#include "viz_node/pointer_desk.h"
+#include "viz_node/pointer_server.h"
 #include "viz_node/scene_listener.h"
 #include "viz_node/scene_mirror.h"
 #include "viz_node/session_topics.h"
@@ -80,7 +80,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
   viz::CommandRelay relay(participant, start.epoch, start.key, config.rights, start.may_command());
   std::optional<dds::Writer<msg::PointerTarget>> targets;
   if (start.may_command()) targets.emplace(participant, dds::Topic::kPointerTarget);
-  viz::PointerDesk pointers(start.epoch, [&targets](msg::PointerTarget& target) {
+  viz::PointerServer pointers(start.epoch, [&targets](msg::PointerTarget& target) {
     if (targets) static_cast<void>(targets->write(target));  // the next one replaces it
   });
   std::optional<viz::TopicBoard> board;

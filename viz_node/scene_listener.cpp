@@ -143,7 +143,7 @@ struct SceneListener::Impl {
 };
 
 SceneListener::SceneListener(dds::Participant& participant, SceneMirror& mirror,
-                             CommandRelay& relay, PointerDesk& pointers)
+                             CommandRelay& relay, PointerServer& pointers)
     : impl_(std::make_unique<Impl>(participant)) {
   impl_->description.follow([this, &mirror, &pointers](msg::SceneDescription&& message) {
     const std::vector<msg::PortDescription> ports = message.ports();

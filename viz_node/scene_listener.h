@@ -5,7 +5,7 @@
 
 #include "node/dds/participant.h"
 #include "viz_node/command_relay.h"
-#include "viz_node/pointer_desk.h"
+#include "viz_node/pointer_server.h"
 #include "viz_node/scene_mirror.h"
 
 namespace cordis::viz {
@@ -18,7 +18,7 @@ class SceneListener {
   /// @param mirror, relay, pointers  outlive the listener
   /// @throws std::runtime_error when DDS refuses
   SceneListener(dds::Participant& participant, SceneMirror& mirror, CommandRelay& relay,
-                PointerDesk& pointers);
+                PointerServer& pointers);
   ~SceneListener();
   SceneListener(const SceneListener&) = delete;
   SceneListener& operator=(const SceneListener&) = delete;

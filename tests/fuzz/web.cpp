@@ -102,7 +102,7 @@ class Server {
   TopicBoard topics_;
   asio::io_context context_{1};
   SceneMirror mirror_{25.0};
-  PointerDesk pointers_{1, [](msg::PointerTarget&) {}};
+  PointerServer pointers_{1, [](msg::PointerTarget&) {}};
   ServerState state_{mirror_, pointers_, [](const PageCommand&) {}};
   StaticPages pages_ = no_pages();
 };

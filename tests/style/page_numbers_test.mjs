@@ -45,7 +45,7 @@ const EQUAL = {
   'header of sound': [cpp(ENCODER, 'kSoundHeaderBytes'), readme('sound \\(type 4\\), header (\\d+) bytes')],
   'room around a fitted scene': [cpp(CAMERA, 'kMargin'), page('camera_rig.ts', 'ROOM')],
   'growth that the camera follows': [cpp('render/film_view.cpp', 'kMaxGrowth'), page('camera_rig.ts', 'FARTHEST')],
-  'outliers that a view does not follow': [cpp('render/scene_painter.h', 'kOutliers'), page('scene_view.ts', 'ASTRAY')],
+  'outliers that a view does not follow': [cpp('render/scene_painter.h', 'kOutliers'), page('scene_view.ts', 'OUTLIERS')],
   'view from the front': [[`viz_node/${CAMERA}`, 'kFront:\\s+return \\{([^}]*)\\}'], ['viz_node/web/page/camera_rig.ts', 'front: new Vector3\\(([^)]*)\\)']],
   'view from the side': [[`viz_node/${CAMERA}`, 'kSide:\\s+return \\{([^}]*)\\}'], ['viz_node/web/page/camera_rig.ts', 'side: new Vector3\\(([^)]*)\\)']],
   'view from the top': [[`viz_node/${CAMERA}`, 'kTop:\\s+return normalized\\(\\{([^}]*)\\}'], ['viz_node/web/page/camera_rig.ts', 'top: new Vector3\\(([^)]*)\\)']],
@@ -64,9 +64,9 @@ const EQUAL = {
   'few MATs': [cpp(PAINTER, 'kFewMats'), ['viz_node/web/page/scene_view.ts', 'few = this\\.topology\\.matCount <= (\\d+)']],
   'fade of a full scale': [cpp(COLOURING, 'kFade'), page('scene_view.ts', 'FALL'), page('link_view.ts', 'FALL')],
   'size of balls beside links': [cpp(COLOURING, 'kSmallShare'), page('scene_view.ts', 'SMALL')],
-  'components with colours': [cpp('render/components.h', 'kMaxColoured'), page('components.ts', 'MOST_COLOURED')],
-  'frames that give a force': [cpp('render/net_forces.cpp', 'kMinApart'), page('net_forces.ts', 'LEAST_APART_S')],
-  'least contrast': [cpp('render/palette.h', 'kMinContrast'), page('colours.ts', 'LEAST_CONTRAST')],
+  'components with colours': [cpp('render/components.h', 'kMaxColoured'), page('components.ts', 'MAX_COLOURED')],
+  'frames that give a force': [cpp('render/net_forces.cpp', 'kMinApart'), page('net_forces.ts', 'MIN_APART_S')],
+  'least contrast': [cpp('render/palette.h', 'kMinContrast'), page('colours.ts', 'MIN_CONTRAST')],
   'steps to a readable colour': [cpp('render/palette.cpp', 'kSteps'), page('colours.ts', 'STEPS')],
   'matter without a colour of the scene': [cpp('render/scene_colours.h', 'kNone'), page('given_colours.ts', 'NONE')],
   'prefixes of units': [['viz_node/render/number_text.cpp', 'kPrefixes = \\{(.*?)\\};'], ['viz_node/web/page/format.ts', 'PREFIXES: [^=]*= \\[(.*?)\\];']],
@@ -97,7 +97,7 @@ test('the camera: half of the field of view has that tangent', () => {
 
 test('a page that drags repeats itself often enough, and is given up after the silence that it expects', () => {
   const [repeatMs] = numbersIn(...page('pointer.ts', 'REPEAT_MS'));
-  const [silenceNsec] = numbersIn(...cpp('pointer_desk.h', 'kSilenceNsec'));
+  const [silenceNsec] = numbersIn(...cpp('pointer_server.h', 'kSilenceNsec'));
   assert.ok(4 * repeatMs * 1e6 <= silenceNsec);
   const [saidMs] = numbersIn('viz_node/web/page/pointer.ts', 'says nothing for longer than (\\d+) ms');
   assert.equal(saidMs * 1e6, silenceNsec);

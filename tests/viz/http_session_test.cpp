@@ -101,7 +101,7 @@ class Server {
   std::vector<PageCommand> commands_;
   SceneMirror mirror_{25.0};
   TopicBoard topics_;
-  PointerDesk pointers_{1, [](msg::PointerTarget&) {}};
+  PointerServer pointers_{1, [](msg::PointerTarget&) {}};
   ServerState state_{mirror_, pointers_,
                      [this](const PageCommand& command) { commands_.push_back(command); }};
   StaticPages pages_{std::filesystem::path("/nonexistent")};

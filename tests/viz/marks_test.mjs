@@ -9,7 +9,7 @@ import { out, runCases, source, until } from './session.mjs';
 const HANDLE = 12; // the MAT of the port
 const [FIRST_BODY, SECOND_BODY, HOOKED] = [20, 45, 23]; // two MATs, and a link that changes its state
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
-const LEAST_CONTRAST = 4.5; // WCAG 2.1, 1.4.3: text of usual size
+const MIN_CONTRAST = 4.5; // WCAG 2.1, 1.4.3: text of usual size
 
 const bytesOf = (hex) => [1, 3, 5].map((begin) => Number.parseInt(hex.slice(begin, begin + 2), 16));
 const isPressed = (page, key) => page.locator(`#tools button[data-key="${key}"]`).getAttribute('aria-pressed');
@@ -320,10 +320,10 @@ const cases = {
     const theme = () => page.evaluate(() => document.documentElement.dataset.theme);
     await pick(page, placeOf(page, FIRST_BODY), /^string\[20\]$/);
     assert.equal(await theme(), 'dark');
-    assert.deepEqual(await page.evaluate(faintTexts, LEAST_CONTRAST), []);
+    assert.deepEqual(await page.evaluate(faintTexts, MIN_CONTRAST), []);
     await page.keyboard.press('l');
     assert.equal(await theme(), 'light');
-    assert.deepEqual(await page.evaluate(faintTexts, LEAST_CONTRAST), []);
+    assert.deepEqual(await page.evaluate(faintTexts, MIN_CONTRAST), []);
     const { left, top } = await page.evaluate(() => document.querySelector('#stage').getBoundingClientRect());
     const colour = await page.evaluate(([x, y]) => window.viz.pixelAt(x, y), [left + 33, top + 207]);
     assert.ok(Math.min(...colour) > 200, `the ground is light: ${colour}`);

@@ -161,7 +161,7 @@ void SignalPlot::draw_curve(Canvas& canvas, const Curve& curve, const Rectangle&
     return Place{area.x + scale_x * (time_s_[i] - first_s),
                  area.y + scale_y * (range.high - curve.value[i]), 0.0};
   };
-  // Of all values within half a pixel of time: the first, the lowest, the highest and the last.
+  // Drawn are the first, the lowest, the highest and the last of all values within half a pixel of time.
   std::vector<Place> line;
   const auto flush = [&] {
     if (line.size() > 1) canvas.line(line, 1.6 * unit_, colour);

@@ -88,7 +88,7 @@ std::string url_of(const tcp::endpoint& endpoint) {
 }  // namespace
 
 struct WebServer::Impl {
-  Impl(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
+  Impl(const ServerConfig& config, SceneMirror& mirror, PointerServer& pointers,
        std::function<void(const PageCommand&)> execute)
       : pages(config.folder), state(mirror, pointers, std::move(execute)) {
     listen(acceptor, config);
@@ -188,7 +188,7 @@ struct WebServer::Impl {
   std::thread thread;
 };
 
-WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
+WebServer::WebServer(const ServerConfig& config, SceneMirror& mirror, PointerServer& pointers,
                      std::function<void(const PageCommand&)> execute)
     : impl_(std::make_unique<Impl>(config, mirror, pointers, std::move(execute))) {
   mirror.on_change([impl = impl_.get()] { impl->wake(); });

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "viz_node/pointer_desk.h"
+#include "viz_node/pointer_server.h"
 #include "viz_node/scene_mirror.h"
 #include "viz_node/topic_board.h"
 
@@ -50,7 +50,7 @@ class WebServer {
   /// On an address beyond loopback a page may command only with the token in its address.
   /// @throws std::runtime_error when the address is not one of this machine, or is beyond loopback
   /// and the token is not usable
-  WebServer(const ServerConfig& config, SceneMirror& mirror, PointerDesk& pointers,
+  WebServer(const ServerConfig& config, SceneMirror& mirror, PointerServer& pointers,
             std::function<void(const PageCommand&)> execute);
 
   /// Closes all connections and joins the thread.

@@ -21,7 +21,7 @@
 
 #include "node/latency.h"
 #include "node/repeated_event.h"
-#include "viz_node/pointer_desk.h"
+#include "viz_node/pointer_server.h"
 #include "viz_node/scene_mirror.h"
 #include "viz_node/topic_board.h"
 #include "viz_node/web/access_token.h"
@@ -47,12 +47,12 @@ class WebSocketSession;
 
 /// What all connections share. Lives in the server's thread, but for the latency.
 struct ServerState {
-  ServerState(SceneMirror& mirrored, PointerDesk& desk,
+  ServerState(SceneMirror& mirrored, PointerServer& server,
               std::function<void(const PageCommand&)> call)
-      : mirror(mirrored), pointers(desk), execute(std::move(call)) {}
+      : mirror(mirrored), pointers(server), execute(std::move(call)) {}
 
   SceneMirror& mirror;
-  PointerDesk& pointers;
+  PointerServer& pointers;
   std::function<void(const PageCommand&)> execute;
   std::string hello;                          // to a page that may command
   std::string hello_view_only;                // to one that may not

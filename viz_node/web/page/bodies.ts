@@ -4,7 +4,7 @@ import { GivenColours, ShownColours } from './given_colours.ts';
 import type { Description, NamedRange, Topology } from './protocol.ts';
 import { MAT_FIXED, MAT_MASS, MAT_PORT } from './wire.ts';
 
-const MOST_NAMES = 60; // in the view
+const MAX_NAMES = 60; // in the view
 
 /** Matter that looks alike: a body, or a part of it to which the scene gives a colour. */
 export interface Body {
@@ -180,7 +180,7 @@ export class Bodies {
   get named(): NamedRange[] {
     const { matter } = this.description;
     const ports = this.description.ports.map(({ name, mat }) => ({ name, first: mat, count: 1 }));
-    const ranges = matter.length <= MOST_NAMES ? matter : this.list.map(({ name, first }) => ({ name, first, count: 1 }));
+    const ranges = matter.length <= MAX_NAMES ? matter : this.list.map(({ name, first }) => ({ name, first, count: 1 }));
     return [...ports, ...ranges];
   }
 }

@@ -24,7 +24,7 @@ const DIRECTIONS: Record<Preset, Vector3> = {
 const FIELD_OF_VIEW = 40; // [degrees], vertical
 const ROOM = 1.12; // of a fitted scene, from side to side
 const FREE_ROOM = 1.06; // likewise, between what stands above and below it
-const LEAST_FREE = 0.4; // of the height
+const MIN_FREE = 0.4; // of the height
 const FARTHEST = 4; // times the size of a scene at first, up to which it is followed
 
 /** What stands over the view at its upper and lower edge [CSS pixels]. */
@@ -207,7 +207,7 @@ export class CameraRig {
   /** At most so much of the edges that enough of the view is left. */
   private keptFree(): Edges {
     const { top, bottom } = this.edges();
-    const share = Math.min(1, ((1 - LEAST_FREE) * this.height) / Math.max(top + bottom, 1));
+    const share = Math.min(1, ((1 - MIN_FREE) * this.height) / Math.max(top + bottom, 1));
     return { top: share * top, bottom: share * bottom };
   }
 

@@ -8,22 +8,22 @@ const BUCKET_MS = 10_000;
  * time that even this message took remains in it: what is measured with it is the delay beyond the fastest.
  */
 export class ClockOffset {
-  private buckets: { beginMs: number; leastMs: number }[] = [];
+  private buckets: { beginMs: number; minMs: number }[] = [];
 
   note(sentNsec: number, nowMs: number): void {
     const offset = nowMs - sentNsec * 1e-6;
     const last = this.buckets[this.buckets.length - 1];
     if (last === undefined || nowMs - last.beginMs > BUCKET_MS) {
-      this.buckets.push({ beginMs: nowMs, leastMs: offset });
+      this.buckets.push({ beginMs: nowMs, minMs: offset });
       if (this.buckets.length > 3) this.buckets.shift();
     } else {
-      last.leastMs = Math.min(last.leastMs, offset);
+      last.minMs = Math.min(last.minMs, offset);
     }
   }
 
   /** viz_node's clock [ms] when the page's is `nowMs`. */
   serverMs(nowMs: number): number {
-    return nowMs - Math.min(...this.buckets.map((bucket) => bucket.leastMs));
+    return nowMs - Math.min(...this.buckets.map((bucket) => bucket.minMs));
   }
 
   clear(): void {

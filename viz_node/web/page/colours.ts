@@ -48,7 +48,7 @@ export function ramp(colours: string[], count: number): Uint8Array {
   return bytes;
 }
 
-const LEAST_CONTRAST = 3; // of a mark of the view to its background: WCAG 2.1, 1.4.11
+const MIN_CONTRAST = 3; // of a mark of the view to its background: WCAG 2.1, 1.4.11
 const STEPS = 20; // on the way to the colour of texts
 
 /** Relative luminance of "#rrggbb", 0..1. */
@@ -73,7 +73,7 @@ export function mixed(first: string, second: string, share: number): string {
 export function readable(wanted: string, { background, text }: Palette): string {
   for (let step = 0; step < STEPS; ++step) {
     const colour = mixed(wanted, text, step / STEPS);
-    if (contrast(colour, background) >= LEAST_CONTRAST) return colour;
+    if (contrast(colour, background) >= MIN_CONTRAST) return colour;
   }
   return text;
 }

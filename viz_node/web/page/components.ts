@@ -1,13 +1,13 @@
 // viz_node/web/page/components.ts -- which MATs hang together by links, and the colours of these
 // components.
 
-const MOST_COLOURED = 8; // the largest; the others share one colour
+const MAX_COLOURED = 8; // the largest; the others share one colour
 export const SMALLER = 255; // the colour number of a component that is not among the largest
 
 export interface Component {
   root: number; // its lowest MAT
   size: number; // MATs
-  colour: number; // below MOST_COLOURED, or SMALLER
+  colour: number; // below MAX_COLOURED, or SMALLER
 }
 
 /** Connected components of a graph of links. One that stays among the largest keeps its colour. */
@@ -37,7 +37,7 @@ export class Components {
     const found: Component[] = [];
     sizes.forEach((size, root) => size > 1 && found.push({ root, size, colour: SMALLER }));
     found.sort((a, b) => b.size - a.size || a.root - b.root);
-    this.giveColours(found.slice(0, MOST_COLOURED));
+    this.giveColours(found.slice(0, MAX_COLOURED));
     this.list = found;
     this.places.fill(0);
     found.forEach(({ root }, place) => (this.places[root] = place + 1));

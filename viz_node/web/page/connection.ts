@@ -6,7 +6,7 @@ const FIRST_PAUSE_MS = 250;
 const LONGEST_PAUSE_MS = 2000;
 // viz_node speaks four times a second, whatever the scene does.
 const SILENCE_MS = 4000;
-const LOOK_MS = 500; // for silence
+const POLL_MS = 500; // for silence
 
 export interface Listener {
   message(message: Message): void;
@@ -96,7 +96,7 @@ export class Connection {
       if (performance.now() - this.lastMs < SILENCE_MS) return;
       socket.close();
       this.reopen(socket);
-    }, LOOK_MS);
+    }, POLL_MS);
   }
 
   private reopen(socket: WebSocket): void {

@@ -10,10 +10,10 @@ import { fillRows, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
 import { MAX_BONDS } from './wire.ts';
 
-const MOST_BODIES = 8;
-const MOST_SURFACES = 3; // names in the legend
-const MOST_STATES = 3; // that have one colour and one pattern
-const MOST_LINKS = 12;
+const MAX_BODIES = 8;
+const MAX_SURFACES = 3; // names in the legend
+const MAX_STATES = 3; // that have one colour and one pattern
+const MAX_LINKS = 12;
 
 export interface LegendEntry {
   mark: 'mass' | 'fixed-point' | 'handle' | 'tool' | 'ring' | 'key' | 'link solid' | 'link dashed' | 'link dotted' | 'surface';
@@ -34,7 +34,7 @@ export function legendOf(description: Description, view: SceneView, hasKeys: boo
   const ofSurfaces = bodies.ofSurfaces;
   const plain = description.surfaces.filter((_, i) => ofSurfaces[i] === null);
   if (plain.length > 0) entries.push({ mark: 'surface', text: surfaceText(plain), colour: palette.surface });
-  for (const { mark, name, wanted } of bodies.colouredFixed.slice(0, MOST_BODIES))
+  for (const { mark, name, wanted } of bodies.colouredFixed.slice(0, MAX_BODIES))
     entries.push({ mark, text: mark === 'surface' ? `surface: ${name}` : `${name}, fixed`, colour: readable(wanted, palette) });
   if (colouring !== 'stretch') entries.push(...linkEntries(view, palette.link_states));
   return entries;
@@ -46,8 +46,8 @@ function massEntries(view: SceneView, colouring: Colouring, palette: Palette): L
   if (colouring === 'stretch') return [{ mark: 'mass', text: 'mass', colour: palette.quiet }];
   if (colouring === 'components') return componentEntries(view, palette);
   const { list } = view.bodies;
-  const entries = list.slice(0, MOST_BODIES).map((body): LegendEntry => ({ mark: 'mass', text: body.name, colour: view.bodies.colourOf(body, palette) }));
-  if (list.length > MOST_BODIES) entries.at(-1)!.text += ` and ${list.length - MOST_BODIES} more`;
+  const entries = list.slice(0, MAX_BODIES).map((body): LegendEntry => ({ mark: 'mass', text: body.name, colour: view.bodies.colourOf(body, palette) }));
+  if (list.length > MAX_BODIES) entries.at(-1)!.text += ` and ${list.length - MAX_BODIES} more`;
   return entries;
 }
 
@@ -65,8 +65,8 @@ function componentEntries({ links }: SceneView, palette: Palette): LegendEntry[]
 /** `surface: floor, step`: the first parts of the names. */
 function surfaceText(surfaces: Surface[]): string {
   const names = [...new Set(surfaces.map(({ name }) => bodyName(name)))].filter((name) => name !== '');
-  const more = names.length > MOST_SURFACES ? ' …' : '';
-  return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MOST_SURFACES).join(', ')}${more}`;
+  const more = names.length > MAX_SURFACES ? ' …' : '';
+  return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MAX_SURFACES).join(', ')}${more}`;
 }
 
 /** A colour for each state, a pattern for each liaison where there are several. States that look the same share an entry. */
@@ -79,8 +79,8 @@ function linkEntries({ groups: { list }, bonds }: SceneView, colours: string[]):
   const ofBonds = bonds.groups.list.flatMap(({ name, states, shown, pattern }) => shown.map((number) => ({ pattern, number, text: `${name}: ${states[number]}` })));
   const cut = bonds.isCut ? ` (the first ${count(MAX_BONDS)} of all)` : '';
   const entries = [...entriesOf(links, 'link', colours), ...entriesOf(ofBonds, `bond of sets${cut}`, colours)];
-  if (entries.length > MOST_LINKS) entries[MOST_LINKS - 1]!.text += ' …';
-  return entries.slice(0, MOST_LINKS);
+  if (entries.length > MAX_LINKS) entries[MAX_LINKS - 1]!.text += ' …';
+  return entries.slice(0, MAX_LINKS);
 }
 
 /** One entry for each colour and pattern. @param what  before the first */
@@ -93,7 +93,7 @@ function entriesOf(states: { pattern: number; number: number; text: string }[], 
   const looks = [...texts.keys()].sort((a, b) => (a % PATTERNS.length) - (b % PATTERNS.length) || a - b);
   const entries = looks.map((look): LegendEntry => {
     const names = [...new Set(texts.get(look)!)];
-    const text = names.slice(0, MOST_STATES).join(' or ') + (names.length > MOST_STATES ? ' …' : '');
+    const text = names.slice(0, MAX_STATES).join(' or ') + (names.length > MAX_STATES ? ' …' : '');
     return { mark: `link ${PATTERNS[look % PATTERNS.length]!}`, text, colour: colours[Math.floor(look / PATTERNS.length)]! };
   });
   if (entries.length > 0) entries[0]!.text = entries[0]!.text === '' ? what : `${what}, ${entries[0]!.text}`;

@@ -2,8 +2,8 @@
 
 // Places are 32-bit numbers: at 0.3 m they are rounded by up to 15 nm. Frames that are this far apart show 0.1 mN of that on 1 g;
 // single steps of a fast scene would show a thousand times as much.
-const LEAST_APART_S = 1e-3;
-const LEAST_KEPT_APART_S = LEAST_APART_S / 4;
+const MIN_APART_S = 1e-3;
+const MIN_KEPT_APART_S = MIN_APART_S / 4;
 
 interface Kept {
   positions: Float32Array;
@@ -11,7 +11,7 @@ interface Kept {
 }
 
 /**
- * Net force on MATs, the mean over two intervals of at least LEAST_APART_S, where the middle counts most. They are those of the last
+ * Net force on MATs, the mean over two intervals of at least MIN_APART_S, where the middle counts most. They are those of the last
  * two frames where frames are so far apart. It is what all that acts on a mass adds up to: links, contacts, fields and the medium.
  *
  * With places x0, x1, x2 at times h1 and h2 apart, 2 ((x2 - x1) / h2 - (x1 - x0) / h1) / (h1 + h2) is the mean of the acceleration,
@@ -34,14 +34,14 @@ export class NetForces {
       return;
     }
     const lastKept = this.kept.at(-1);
-    if (lastKept === undefined || last.timeS - lastKept.timeS >= LEAST_KEPT_APART_S) this.kept.push(last);
+    if (lastKept === undefined || last.timeS - lastKept.timeS >= MIN_KEPT_APART_S) this.kept.push(last);
     // Whoever is older than the first of the three is not needed.
     while (this.kept.length > 2 && this.threeOf(this.kept.slice(1)) !== null) this.kept.shift();
   }
 
   /** The newest frame and two before it, the oldest first; null where there are none. */
   private threeOf(kept: Kept[]): [Kept, Kept, Kept] | null {
-    const lastBefore = (one: Kept | null) => kept.filter(({ timeS }) => one !== null && one.timeS - timeS >= LEAST_APART_S).at(-1) ?? null;
+    const lastBefore = (one: Kept | null) => kept.filter(({ timeS }) => one !== null && one.timeS - timeS >= MIN_APART_S).at(-1) ?? null;
     const x2 = this.newest;
     const x1 = lastBefore(x2);
     const x0 = lastBefore(x1);

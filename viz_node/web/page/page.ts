@@ -34,7 +34,7 @@ import { imageOfView } from './view_image.ts';
 
 const FIGURES_PERIOD_MS = 200;
 const PLOTS_PERIOD_MS = 100;
-const MOST_ERRORS = 20;
+const MAX_ERRORS = 20;
 const CONTEXT_LOST = 'The browser stopped drawing: its graphics driver failed. Reload the page if the view does not come back';
 
 function find<T extends HTMLElement>(selector: string): T {
@@ -138,7 +138,7 @@ export class Page {
   note(error: unknown): void {
     console.error(error);
     this.errors.push(String(error));
-    if (this.errors.length > MOST_ERRORS) this.errors.shift();
+    if (this.errors.length > MAX_ERRORS) this.errors.shift();
   }
 
   private take(message: Message): void {

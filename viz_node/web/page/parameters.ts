@@ -5,7 +5,7 @@ import { fillRows, press } from './rows.ts';
 const LINE = /^(\S+\.[^\s.]+) = (-?[\d.]+(?:e[+-]?\d+)?)$/;
 const DECADES = 1; // that a slider goes up and down from the first value that was seen
 const GRAVITY = '_m_per_s2';
-const LEAST_GRAVITY_SPAN = 20; // [m/s^2], either way
+const MIN_GRAVITY_SPAN = 20; // [m/s^2], either way
 const UNITS: [ending: string, unit: string][] = [
   ['_n_per_m', 'N/m'],
   ['_n_s_per_m', 'N s/m'],
@@ -34,7 +34,7 @@ interface SliderScale {
 
 function scaleOf(name: string, first: number): SliderScale | null {
   if (name.endsWith(GRAVITY)) {
-    const span = Math.max(2 * Math.abs(first), LEAST_GRAVITY_SPAN);
+    const span = Math.max(2 * Math.abs(first), MIN_GRAVITY_SPAN);
     return { min: -span, max: span, placeOf: (value) => value, valueOf: (place) => place };
   }
   if (first <= 0) return null;

@@ -4,7 +4,7 @@ import { AXIS_FONT, labelsOf, rangeOf } from './plot_options.ts';
 import type { Description } from './protocol.ts';
 import type { SignalStore } from './signal_store.ts';
 
-const MOST_POINTS = 2000;
+const MAX_POINTS = 2000;
 const [LEFT, RIGHT, TOP, BOTTOM] = [72, 12, 6, 20]; // around the curve [CSS pixels]
 
 export class PhasePlot {
@@ -39,7 +39,7 @@ export class PhasePlot {
     [this.canvas.width, this.canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
     pen.scale(ratio, ratio);
     const [ix, iy] = [Number(this.x.value), Number(this.y.value)];
-    const rows = store.rows([ix, iy], windowS, endS, MOST_POINTS) as [number, number, number][];
+    const rows = store.rows([ix, iy], windowS, endS, MAX_POINTS) as [number, number, number][];
     const finite = rows.filter(([, a, b]) => Number.isFinite(a) && Number.isFinite(b));
     const [x0, x1] = spanOf(finite.map(([, a]) => a));
     const [y0, y1] = spanOf(finite.map(([, , b]) => b));

@@ -6,7 +6,7 @@ import { joined, prefixOf, threeDigits, withUnit } from './format.ts';
 const VALUES_PX = 72; // least room for the labels of values
 const LETTER_PX = 7;
 const SHORT_UNIT = 4; // letters for which that is enough
-const MOST_DECADES = 6; // below the largest value
+const MAX_DECADES = 6; // below the largest value
 const LABELLED_DECADES = 4;
 export const AXIS_FONT = '11px system-ui, "DejaVu Sans", sans-serif';
 
@@ -79,11 +79,11 @@ export function rangeOf(low: number | null, high: number | null): [number, numbe
   return [low - room, high + room];
 }
 
-/** The decades that hold positive values, not more than MOST_DECADES of them. */
+/** The decades that hold positive values, not more than MAX_DECADES of them. */
 function decadesOf(low: number | null, high: number | null): [number, number] {
   if (low === null || high === null || !(high > 0)) return [0.1, 1];
   const top = Math.ceil(Math.log10(high) - 1e-9);
-  const bottom = Math.max(top - MOST_DECADES, Math.floor(Math.log10(Math.max(low, Number.MIN_VALUE)) + 1e-9));
+  const bottom = Math.max(top - MAX_DECADES, Math.floor(Math.log10(Math.max(low, Number.MIN_VALUE)) + 1e-9));
   return [10 ** Math.min(bottom, top - 1), 10 ** top];
 }
 

@@ -8,8 +8,8 @@ import type { Description } from './protocol.ts';
 import { setText } from './rows.ts';
 import { LONGEST_WINDOW_S, SignalStore } from './signal_store.ts';
 
-const MOST_PLOTS = 4; // at first; more when a person chooses more
-const MOST_PER_PLOT = paletteOf('dark').signals.length;
+const MAX_PLOTS = 4; // at first; more when a person chooses more
+const MAX_PER_PLOT = paletteOf('dark').signals.length;
 const SHORTEST_WINDOW_ROWS = 20;
 
 interface Plot {
@@ -41,8 +41,8 @@ export class Plots {
     this.description = description;
     this.store = new SignalStore(description.signals.length, description.gesture_rate_hz);
     this.heldS = null;
-    const groups = [...this.byUnit(description.signals.map((_, signal) => signal))].slice(0, MOST_PLOTS);
-    this.chosen = new Set(groups.flatMap(([, signals]) => signals.slice(0, MOST_PER_PLOT)));
+    const groups = [...this.byUnit(description.signals.map((_, signal) => signal))].slice(0, MAX_PLOTS);
+    this.chosen = new Set(groups.flatMap(([, signals]) => signals.slice(0, MAX_PER_PLOT)));
     this.buildAll();
     return this.store;
   }

@@ -4,7 +4,7 @@ import type { Marks } from './marks.ts';
 import type { SceneView } from './scene_view.ts';
 
 const FALL = 0.995; // of the force with the full length, per frame
-const LEAST_SHARE = 0.02; // of the full length; below it nothing is drawn
+const MIN_SHARE = 0.02; // of the full length; below it nothing is drawn
 
 /** Draws a force at a MAT. @param largestN  the force that has the full length */
 export function drawForce(marks: Marks, view: SceneView, mat: number, force: number[], largestN: number, colour: string): void {
@@ -24,6 +24,6 @@ export class PortArrows {
     const forces = mats.map((mat) => ({ mat, force: view.portForceOn(mat) ?? [0, 0, 0] }));
     this.largestN = Math.max(FALL * this.largestN, ...forces.map(({ force }) => Math.hypot(...force)));
     for (const { mat, force } of forces)
-      if (Math.hypot(...force) > LEAST_SHARE * this.largestN) drawForce(marks, view, mat, force, this.largestN, colour);
+      if (Math.hypot(...force) > MIN_SHARE * this.largestN) drawForce(marks, view, mat, force, this.largestN, colour);
   }
 }

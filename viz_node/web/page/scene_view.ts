@@ -28,7 +28,7 @@ const SMALL = 0.4; // of the radius of balls, where the links are looked at
 const FOLLOWED = 1000; // of them are looked at, whether all of it is seen
 const FORCE_COLOURS = 256;
 const FALL = 0.985; // of the full scales of speed and force, per frame
-const ASTRAY = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
+const OUTLIERS = 0.01; // share of the MATs that may fly off unfollowed, at either end of each axis
 
 /** A MAT or a link near a point of the view. */
 export interface Near {
@@ -59,7 +59,7 @@ export class SceneView {
   private readonly forceSizes: Float32Array; // on each MAT [N], while they are shown
   private forceRamp: Uint8Array = new Uint8Array(); // their colours, the weakest first
   private strongest = 0; // of them, falls slowly [N]
-  private framesSinceLook = 0;
+  private framesSinceCheck = 0;
   private framed = false;
   private isDrum = false;
   private colouring: Colouring = 'bodies';
@@ -158,9 +158,9 @@ export class SceneView {
       if (this.pose === null) this.rig.start(this.bounds(), this.isDrum ? 'free' : null);
       else this.rig.resume(this.pose, this.bounds());
       this.layGround();
-    } else if (++this.framesSinceLook >= this.topology.matCount / MATS_A_FRAME) {
-      this.framesSinceLook = 0;
-      this.rig.follow(this.bounds(ASTRAY, FOLLOWED));
+    } else if (++this.framesSinceCheck >= this.topology.matCount / MATS_A_FRAME) {
+      this.framesSinceCheck = 0;
+      this.rig.follow(this.bounds(OUTLIERS, FOLLOWED));
     }
   }
 

@@ -2,7 +2,7 @@
 // fixed size.
 import type { Signals } from './protocol.ts';
 
-const MOST_VALUES = 4_000_000; // 16 MB, whatever the scene
+const MAX_VALUES = 4_000_000; // 16 MB, whatever the scene
 export const LONGEST_WINDOW_S = 20;
 
 /** True if the rows of a batch end within a part of a period of where they would with that period. */
@@ -25,7 +25,7 @@ export class SignalStore {
   ) {
     this.period = 1 / rateHz;
     const wanted = Math.ceil(LONGEST_WINDOW_S * rateHz * 1.05) + 1;
-    this.capacity = Math.max(2, Math.min(wanted, Math.floor(MOST_VALUES / Math.max(1, signalCount))));
+    this.capacity = Math.max(2, Math.min(wanted, Math.floor(MAX_VALUES / Math.max(1, signalCount))));
     this.values = new Float32Array(this.capacity * Math.max(1, signalCount));
   }
 

@@ -7,7 +7,7 @@ const SEND_PERIOD_MS = 100; // while the slider is dragged
 const SETTLES_MS = 1000; // after a command, until sim_node has said how fast it plays
 const SLOWEST = 0.01;
 
-/** Simulated seconds per second that a sim_node wants to reach; 1 where nothing is known. */
+/** Simulated seconds per second that a sim_node has as its target, 1 without a status. */
 export function timeScaleOf(sim: NodeState | undefined, description: Description | null): number {
   const ratio = (sim?.target_rate_hz ?? 0) / (description?.gesture_rate_hz ?? 0);
   return Number.isFinite(ratio) && ratio > 0 ? Math.min(1, ratio) : 1;

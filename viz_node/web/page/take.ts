@@ -40,7 +40,7 @@ export class TakeBar {
   private readonly time = document.querySelector<HTMLElement>('#take-time')!;
   private readonly rate = document.querySelector<HTMLSelectElement>('#take-rate')!;
   private readonly file = document.querySelector<HTMLElement>('#take-file')!;
-  private heardMs = 0; // when `take` was said
+  private receivedMs = 0; // when `take` was said
   private isDragged = false;
   private askedMs = Number.NEGATIVE_INFINITY; // of the last jump
   private askedS = 0; // where to
@@ -66,7 +66,7 @@ export class TakeBar {
 
   update(nodes: NodeState[]): void {
     const take = takeIn(nodes);
-    if (take?.positionS !== this.take?.positionS || take?.state !== this.take?.state) this.heardMs = performance.now();
+    if (take?.positionS !== this.take?.positionS || take?.state !== this.take?.state) this.receivedMs = performance.now();
     this.take = take;
     this.panel.hidden = take === null;
     this.bar.disabled = this.rate.disabled = !this.connection.mayCommand;
@@ -127,7 +127,7 @@ export class TakeBar {
   private nowS(take: Take): number {
     const now = performance.now();
     if (now - this.askedMs < SETTLES_MS) return this.askedS;
-    const sinceS = take.state === 'playing' ? ((now - this.heardMs) / 1000) * take.rate : 0;
+    const sinceS = take.state === 'playing' ? ((now - this.receivedMs) / 1000) * take.rate : 0;
     return Math.min(take.lengthS, take.positionS + sinceS);
   }
 

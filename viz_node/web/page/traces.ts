@@ -6,7 +6,7 @@ import { optionsOf, valuesPxOf } from './plot_options.ts';
 import { setText } from './rows.ts';
 import { LONGEST_WINDOW_S } from './signal_store.ts';
 
-const MOST_TRACES = 4; // the oldest goes
+const MAX_TRACES = 4; // the oldest goes
 
 /** What is plotted of a thing. */
 export interface Traced {
@@ -108,7 +108,7 @@ export class Traces {
   /** Plots a thing, or no longer. */
   toggle(traced: Traced): void {
     if (this.has(traced.key)) return this.remove(traced.key);
-    if (this.list.length === MOST_TRACES) this.list.shift()!.close();
+    if (this.list.length === MAX_TRACES) this.list.shift()!.close();
     const trace = new Trace(traced, () => this.remove(traced.key));
     trace.paint(this.palette);
     this.list.push(trace);

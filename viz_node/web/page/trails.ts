@@ -2,7 +2,7 @@
 import { sharesOf, type Palette } from './colours.ts';
 import { COLOUR_FRAGMENT, shapeOf, VertexArray, type Program, type Shape } from './gl_canvas.ts';
 
-const MOST_MATS = 300; // more are sampled
+const MAX_MATS = 300; // more are sampled
 const FRAMES = 60; // of one trail
 
 const TRAIL_PROGRAM: Program = {
@@ -31,7 +31,7 @@ export class Trails {
 
   /** @param mats  those that may move */
   constructor(mats: number[], palette: Palette) {
-    const stride = Math.max(1, Math.ceil(mats.length / MOST_MATS));
+    const stride = Math.max(1, Math.ceil(mats.length / MAX_MATS));
     this.mats = mats.filter((_, i) => i % stride === 0);
     this.places = new VertexArray(new Float32Array(3 * FRAMES * this.mats.length), 3);
     const ages = Float32Array.from({ length: FRAMES * this.mats.length }, (_, i) => (i % FRAMES) / (FRAMES - 1));

@@ -1,4 +1,4 @@
-// viz_node/pointer_desk.h -- which page holds which port, and what its hand feels.
+// viz_node/pointer_server.h -- which page holds which port, and what its hand feels.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ std::optional<DragRequest> read_drag_request(std::string_view text);
 /// Pages are not trusted. A hold begins where the ports are. From there the targets move at
 /// kMaxSpeed at most, whatever places a page names. A device gets at most one target per
 /// kMinPauseNsec, besides those that let go; a place in between counts with the next one.
-class PointerDesk {
+class PointerServer {
  public:
   static constexpr std::int64_t kSilenceNsec = 500'000'000;
   static constexpr std::int64_t kAbsentNsec = 1'600'000'000;  ///< without a state of the device
@@ -47,7 +47,7 @@ class PointerDesk {
 
   /// @param epoch    of this viz_node
   /// @param publish  writes a target; called with the lock held, must not wait
-  PointerDesk(std::uint64_t epoch, std::function<void(msg::PointerTarget&)> publish);
+  PointerServer(std::uint64_t epoch, std::function<void(msg::PointerTarget&)> publish);
 
   /// Called, without a lock, when there is something new for the pages.
   void on_change(std::function<void()> call) { changed_ = std::move(call); }

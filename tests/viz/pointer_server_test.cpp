@@ -1,5 +1,5 @@
-// tests/viz/pointer_desk_test.cpp
-#include "viz_node/pointer_desk.h"
+// tests/viz/pointer_server_test.cpp
+#include "viz_node/pointer_server.h"
 
 #include <array>
 #include <cmath>
@@ -20,11 +20,11 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uint32_t kThimbles = 11;
-constexpr std::int64_t kDeskMsec = 1'000'000;
+constexpr std::int64_t kNsecPerMsec = 1'000'000;
 
 /// Two rings of one device: the second is turned by a right angle.
-struct Desk {
-  Desk() : desk(5, [this](msg::PointerTarget& target) { sent.push_back(target); }) {
+struct Fixture {
+  Fixture() : server(5, [this](msg::PointerTarget& target) { sent.push_back(target); }) {
     std::vector<msg::PortDescription> ports(2);
     std::vector<msg::PortFrame> frames(2);
     for (std::uint32_t i = 0; i < 2; ++i) {
@@ -35,34 +35,34 @@ struct Desk {
     }
     frames[0].direction({1, 0, 0, 0, 1, 0});
     frames[1].direction({0, 1, 0, -1, 0, 0});
-    desk.describe(ports, frames, 0);
+    server.describe(ports, frames, 0);
     msg::PointerState state;
     state.device_id(kThimbles);
     state.coordinate_count(4);
-    desk.take(state, 0);
+    server.take(state, 0);
   }
 
   void drag(std::uint32_t page, std::uint32_t port, double x, double y, std::int64_t msec,
             std::uint64_t event = 1) {
-    desk.drag(page, {port, event, std::array{x, y, 0.0}}, {-0.09F, 0.01F, 0, 0.1F, 0.02F, 0},
-              msec * kDeskMsec);
+    server.drag(page, {port, event, std::array{x, y, 0.0}}, {-0.09F, 0.01F, 0, 0.1F, 0.02F, 0},
+                msec * kNsecPerMsec);
   }
   Json text(std::uint32_t page, std::int64_t msec) const {
-    return Json::parse(desk.text(page, msec * kDeskMsec));
+    return Json::parse(server.text(page, msec * kNsecPerMsec));
   }
 
   std::vector<msg::PointerTarget> sent;
-  PointerDesk desk;
+  PointerServer server;
 };
 
-TEST(PointerDesk, TurnsAPlaceIntoCoordinatesAndBeginsWhereThePortsAre) {
-  Desk desk;
-  desk.drag(1, 0, -0.07, 0.03, 10);
-  ASSERT_EQ(desk.sent.size(), 1u);
-  EXPECT_NEAR(desk.sent[0].target_m()[0], 0.01, 1e-7) << "a hold begins where the port is";
-  EXPECT_NEAR(desk.sent[0].target_m()[1], 0.01, 1e-7);
-  desk.drag(1, 0, -0.07, 0.03, 110);
-  const msg::PointerTarget target = desk.sent[1];
+TEST(PointerServer, TurnsAPlaceIntoCoordinatesAndBeginsWhereThePortsAre) {
+  Fixture fixture;
+  fixture.drag(1, 0, -0.07, 0.03, 10);
+  ASSERT_EQ(fixture.sent.size(), 1u);
+  EXPECT_NEAR(fixture.sent[0].target_m()[0], 0.01, 1e-7) << "a hold begins where the port is";
+  EXPECT_NEAR(fixture.sent[0].target_m()[1], 0.01, 1e-7);
+  fixture.drag(1, 0, -0.07, 0.03, 110);
+  const msg::PointerTarget target = fixture.sent[1];
   EXPECT_EQ(target.device_id(), kThimbles);
   EXPECT_EQ(target.epoch(), 5u);
   EXPECT_EQ(target.sequence_number(), 2u);
@@ -75,52 +75,52 @@ TEST(PointerDesk, TurnsAPlaceIntoCoordinatesAndBeginsWhereThePortsAre) {
   EXPECT_NEAR(target.target_m()[2], 0.02, 1e-7);
   EXPECT_NEAR(target.target_m()[3], 0.0, 1e-7);
 
-  desk.drag(1, 1, 0.05, 0.02, 120);
-  desk.drag(1, 1, 0.05, 0.02, 220);
-  EXPECT_EQ(desk.sent[3].held_coordinates(), 15u);
-  EXPECT_NEAR(desk.sent[3].target_m()[2], 0.02, 1e-12);
-  EXPECT_NEAR(desk.sent[3].target_m()[3], 0.05, 1e-12);
+  fixture.drag(1, 1, 0.05, 0.02, 120);
+  fixture.drag(1, 1, 0.05, 0.02, 220);
+  EXPECT_EQ(fixture.sent[3].held_coordinates(), 15u);
+  EXPECT_NEAR(fixture.sent[3].target_m()[2], 0.02, 1e-12);
+  EXPECT_NEAR(fixture.sent[3].target_m()[3], 0.05, 1e-12);
 }
 
-TEST(PointerDesk, GivesADeviceToOnePageAtATime) {
-  Desk desk;
-  desk.drag(1, 0, 0, 0, 0);
-  desk.drag(2, 1, 0, 0, 100);
-  EXPECT_EQ(desk.sent.size(), 1u) << "the second page has the other ring of the same device";
-  EXPECT_EQ(desk.text(2, 100)["ports"][1]["holder"], 1);
-  EXPECT_EQ(desk.text(2, 100)["page"], 2);
+TEST(PointerServer, GivesADeviceToOnePageAtATime) {
+  Fixture fixture;
+  fixture.drag(1, 0, 0, 0, 0);
+  fixture.drag(2, 1, 0, 0, 100);
+  EXPECT_EQ(fixture.sent.size(), 1u) << "the second page has the other ring of the same device";
+  EXPECT_EQ(fixture.text(2, 100)["ports"][1]["holder"], 1);
+  EXPECT_EQ(fixture.text(2, 100)["page"], 2);
 
-  desk.drag(2, 1, 0, 0, 501);
-  EXPECT_EQ(desk.sent.size(), 2u) << "the first was silent for 0.5 s";
-  desk.drag(1, 0, 0, 0, 510);
-  EXPECT_EQ(desk.sent.size(), 2u);
-  desk.desk.drag(2, {1, 9, std::nullopt}, {}, 520 * kDeskMsec);
-  ASSERT_EQ(desk.sent.size(), 3u);
-  EXPECT_FALSE(desk.sent[2].holds());
-  desk.drag(1, 0, 0, 0, 530);
-  EXPECT_TRUE(desk.sent.back().holds());
+  fixture.drag(2, 1, 0, 0, 501);
+  EXPECT_EQ(fixture.sent.size(), 2u) << "the first was silent for 0.5 s";
+  fixture.drag(1, 0, 0, 0, 510);
+  EXPECT_EQ(fixture.sent.size(), 2u);
+  fixture.server.drag(2, {1, 9, std::nullopt}, {}, 520 * kNsecPerMsec);
+  ASSERT_EQ(fixture.sent.size(), 3u);
+  EXPECT_FALSE(fixture.sent[2].holds());
+  fixture.drag(1, 0, 0, 0, 530);
+  EXPECT_TRUE(fixture.sent.back().holds());
 }
 
-TEST(PointerDesk, LetsGoWhenThePageLeavesOrTheSceneChanges) {
-  Desk desk;
-  desk.drag(1, 0, 0, 0, 0);
-  desk.desk.leave(2, kDeskMsec);
-  EXPECT_EQ(desk.sent.size(), 1u) << "another page left";
-  desk.desk.leave(1, kDeskMsec);
-  ASSERT_EQ(desk.sent.size(), 2u);
-  EXPECT_FALSE(desk.sent[1].holds());
-  EXPECT_EQ(desk.sent[1].sequence_number(), 2u);
+TEST(PointerServer, LetsGoWhenThePageLeavesOrTheSceneChanges) {
+  Fixture fixture;
+  fixture.drag(1, 0, 0, 0, 0);
+  fixture.server.leave(2, kNsecPerMsec);
+  EXPECT_EQ(fixture.sent.size(), 1u) << "another page left";
+  fixture.server.leave(1, kNsecPerMsec);
+  ASSERT_EQ(fixture.sent.size(), 2u);
+  EXPECT_FALSE(fixture.sent[1].holds());
+  EXPECT_EQ(fixture.sent[1].sequence_number(), 2u);
 
-  desk.drag(1, 0, 0, 0, 10);
-  desk.desk.describe({}, {}, 20 * kDeskMsec);
-  EXPECT_FALSE(desk.sent.back().holds());
-  EXPECT_TRUE(desk.text(1, 20)["ports"].empty());
+  fixture.drag(1, 0, 0, 0, 10);
+  fixture.server.describe({}, {}, 20 * kNsecPerMsec);
+  EXPECT_FALSE(fixture.sent.back().holds());
+  EXPECT_TRUE(fixture.text(1, 20)["ports"].empty());
 }
 
-TEST(PointerDesk, SaysWhatIsFeltAndTheEventThatMadeIt) {
-  Desk desk;
-  desk.drag(1, 1, 0, 0, 0, /*event=*/70);
-  desk.drag(1, 1, 0, 0, 10, /*event=*/71);
+TEST(PointerServer, SaysWhatIsFeltAndTheEventThatMadeIt) {
+  Fixture fixture;
+  fixture.drag(1, 1, 0, 0, 0, /*event=*/70);
+  fixture.drag(1, 1, 0, 0, 10, /*event=*/71);
   msg::PointerState state;
   state.device_id(kThimbles);
   state.coordinate_count(4);
@@ -129,34 +129,34 @@ TEST(PointerDesk, SaysWhatIsFeltAndTheEventThatMadeIt) {
   state.felt_number(1);
   state.force_n()[2] = 3.0;
   state.target_m()[3] = 0.04;
-  desk.desk.take(state, 20 * kDeskMsec);
-  const Json port = desk.text(1, 30)["ports"][1];
+  fixture.server.take(state, 20 * kNsecPerMsec);
+  const Json port = fixture.text(1, 30)["ports"][1];
   EXPECT_EQ(port["event"], 70);
   EXPECT_EQ(port["force_n"], Json({0.0, 3.0, 0.0}));
   EXPECT_NEAR(port["target_m"][0].get<double>(), 0.1 - 0.04, 1e-12);
-  EXPECT_EQ(desk.text(2, 30)["ports"][1]["event"], 0) << "it is no event of that page";
+  EXPECT_EQ(fixture.text(2, 30)["ports"][1]["event"], 0) << "it is no event of that page";
 }
 
-TEST(PointerDesk, OffersNoPortOfADeviceThatIsSilent) {
-  Desk desk;
-  EXPECT_EQ(desk.text(1, 1600)["ports"].size(), 2u);
-  EXPECT_TRUE(desk.text(1, 1601)["ports"].empty());
+TEST(PointerServer, OffersNoPortOfADeviceThatIsSilent) {
+  Fixture fixture;
+  EXPECT_EQ(fixture.text(1, 1600)["ports"].size(), 2u);
+  EXPECT_TRUE(fixture.text(1, 1601)["ports"].empty());
 }
 
-TEST(PointerDesk, TakesNoNumberOfAnotherProcessOrPageOnTrust) {
-  Desk desk;
+TEST(PointerServer, TakesNoNumberOfAnotherProcessOrPageOnTrust) {
+  Fixture fixture;
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  desk.drag(1, 0, nan, 0, 0);
-  desk.drag(1, 2, 0, 0, 0);
-  EXPECT_TRUE(desk.sent.empty());
-  desk.desk.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, PointerDesk::kAbsentNsec + 1);
-  EXPECT_TRUE(desk.sent.empty()) << "the device is silent";
+  fixture.drag(1, 0, nan, 0, 0);
+  fixture.drag(1, 2, 0, 0, 0);
+  EXPECT_TRUE(fixture.sent.empty());
+  fixture.server.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, PointerServer::kAbsentNsec + 1);
+  EXPECT_TRUE(fixture.sent.empty()) << "the device is silent";
   msg::PointerState state;
   state.device_id(kThimbles);
   state.coordinate_count(4);
   state.force_n()[0] = nan;
-  desk.desk.take(state, 0);
-  EXPECT_EQ(desk.text(1, 0)["ports"][0]["force_n"], Json({0.0, 0.0, 0.0}));
+  fixture.server.take(state, 0);
+  EXPECT_EQ(fixture.text(1, 0)["ports"][0]["force_n"], Json({0.0, 0.0, 0.0}));
 }
 
 /// What a page may send: places, absurd ones, and numbers that are none.
@@ -169,10 +169,10 @@ double wild_number(std::mt19937& lot) {
   return std::uniform_real_distribution(-5.0, 5.0)(lot);
 }
 
-TEST(PointerDesk, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
+TEST(PointerServer, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
   const std::uint32_t seed = test::test_seed();
   std::mt19937 lot(seed);
-  Desk desk;
+  Fixture fixture;
   std::int64_t now = 0;
   std::size_t sent_count = 0;
   std::int64_t last_nsec = 0;
@@ -181,60 +181,62 @@ TEST(PointerDesk, MovesNoTargetFasterThanItsLimitWhateverPagesSend) {
     msg::PointerState state;
     state.device_id(kThimbles);
     state.coordinate_count(4);
-    desk.desk.take(state, now);
+    fixture.server.take(state, now);
     const auto page = static_cast<std::uint32_t>(1 + lot() % 3);
     DragRequest request{static_cast<std::uint32_t>(lot() % 3), lot(), std::nullopt};
     if (lot() % 8 != 0) request.at_m = {wild_number(lot), wild_number(lot), wild_number(lot)};
     std::vector<float> places(6);
     for (float& place : places) place = static_cast<float>(wild_number(lot));
     if (lot() % 50 == 0) {
-      desk.desk.leave(page, now);
+      fixture.server.leave(page, now);
     } else {
-      desk.desk.drag(page, request, places, now);
+      fixture.server.drag(page, request, places, now);
     }
-    ASSERT_LE(desk.sent.size(), sent_count + 1) << "seed " << seed;
-    if (desk.sent.size() == sent_count) continue;
-    const msg::PointerTarget& target = desk.sent.back();
-    const bool goes_on = sent_count > 0 && desk.sent[sent_count - 1].holds() && target.holds() &&
-                         now - last_nsec < PointerDesk::kSilenceNsec;
-    const bool lets_go = sent_count > 0 && (desk.sent[sent_count - 1].held_coordinates() &
+    ASSERT_LE(fixture.sent.size(), sent_count + 1) << "seed " << seed;
+    if (fixture.sent.size() == sent_count) continue;
+    const msg::PointerTarget& target = fixture.sent.back();
+    const bool goes_on = sent_count > 0 && fixture.sent[sent_count - 1].holds() && target.holds() &&
+                         now - last_nsec < PointerServer::kSilenceNsec;
+    const bool lets_go = sent_count > 0 && (fixture.sent[sent_count - 1].held_coordinates() &
                                             ~target.held_coordinates()) != 0;
     if (sent_count > 0 && !lets_go) {
-      ASSERT_GE(now - last_nsec, PointerDesk::kMinPauseNsec) << "seed " << seed;
+      ASSERT_GE(now - last_nsec, PointerServer::kMinPauseNsec) << "seed " << seed;
     }
     const double longest_m = 2.0 * 1e-9 * static_cast<double>(now - last_nsec) + 1e-9;
     for (std::size_t axis = 0; axis < 16; ++axis) {
       ASSERT_TRUE(std::isfinite(target.target_m()[axis])) << "seed " << seed;
-      ASSERT_LE(std::abs(target.target_m()[axis]), PointerDesk::kMaxCoordinate) << "seed " << seed;
+      ASSERT_LE(std::abs(target.target_m()[axis]), PointerServer::kMaxCoordinate)
+          << "seed " << seed;
       const bool was_held =
-          sent_count > 0 && (desk.sent[sent_count - 1].held_coordinates() >> axis & 1U) != 0;
+          sent_count > 0 && (fixture.sent[sent_count - 1].held_coordinates() >> axis & 1U) != 0;
       const bool is_held = (target.held_coordinates() >> axis & 1U) != 0;
       if (!goes_on || !was_held || !is_held) continue;
-      ASSERT_LE(std::abs(target.target_m()[axis] - desk.sent[sent_count - 1].target_m()[axis]),
+      ASSERT_LE(std::abs(target.target_m()[axis] - fixture.sent[sent_count - 1].target_m()[axis]),
                 longest_m)
           << "seed " << seed << ", message " << n << ", axis " << axis;
     }
-    sent_count = desk.sent.size();
+    sent_count = fixture.sent.size();
     last_nsec = now;
   }
   EXPECT_GT(sent_count, 1000u) << "seed " << seed;
 }
 
-TEST(PointerDesk, SendsAFloodOfOnePageAsAFewTargetsAndTheLastPlaceCounts) {
-  Desk desk;
+TEST(PointerServer, SendsAFloodOfOnePageAsAFewTargetsAndTheLastPlaceCounts) {
+  Fixture fixture;
   for (int n = 0; n < 100'000; ++n)  // in 100 ms
-    desk.desk.drag(1, {0, 1, std::array{-0.1 + 1e-7 * n, 0.0, 0.0}}, {}, std::int64_t{1000} * n);
-  EXPECT_LE(desk.sent.size(), 51u);
-  desk.drag(1, 0, -0.09, 0.0, 300);
-  EXPECT_NEAR(desk.sent.back().target_m()[0], 0.01, 1e-9);
+    fixture.server.drag(1, {0, 1, std::array{-0.1 + 1e-7 * n, 0.0, 0.0}}, {},
+                        std::int64_t{1000} * n);
+  EXPECT_LE(fixture.sent.size(), 51u);
+  fixture.drag(1, 0, -0.09, 0.0, 300);
+  EXPECT_NEAR(fixture.sent.back().target_m()[0], 0.01, 1e-9);
   for (int n = 0; n < 10'000; ++n) {  // takes hold and lets go, in 10 ms
-    desk.desk.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, 310 * kDeskMsec + 1000 * n);
-    desk.desk.drag(1, {0, 1, std::nullopt}, {}, 310 * kDeskMsec + 1000 * n);
+    fixture.server.drag(1, {0, 1, std::array{0.0, 0.0, 0.0}}, {}, 310 * kNsecPerMsec + 1000 * n);
+    fixture.server.drag(1, {0, 1, std::nullopt}, {}, 310 * kNsecPerMsec + 1000 * n);
   }
-  EXPECT_LE(desk.sent.size(), 51u + 1u + 2u * 6u);
+  EXPECT_LE(fixture.sent.size(), 51u + 1u + 2u * 6u);
 }
 
-TEST(PointerDesk, ReadsWhatAPageSays) {
+TEST(PointerServer, ReadsWhatAPageSays) {
   const auto drag =
       read_drag_request(R"({"type":"pointer","port":1,"at_m":[0.5,-1,2],"event":17})");
   ASSERT_TRUE(drag);

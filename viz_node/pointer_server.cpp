@@ -1,5 +1,5 @@
-// viz_node/pointer_desk.cpp
-#include "viz_node/pointer_desk.h"
+// viz_node/pointer_server.cpp
+#include "viz_node/pointer_server.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ bool is_finite(const Vector& v) noexcept {
 /// A coordinate that no device exceeds; 0 for one that is not finite.
 double bounded(double coordinate_m) noexcept {
   if (!std::isfinite(coordinate_m)) return 0.0;
-  return std::clamp(coordinate_m, -PointerDesk::kMaxCoordinate, PointerDesk::kMaxCoordinate);
+  return std::clamp(coordinate_m, -PointerServer::kMaxCoordinate, PointerServer::kMaxCoordinate);
 }
 
 /// Bit n: axis n.
@@ -73,11 +73,11 @@ std::optional<DragRequest> read_drag_request(std::string_view text) {
   return request;
 }
 
-PointerDesk::PointerDesk(std::uint64_t epoch, std::function<void(msg::PointerTarget&)> publish)
+PointerServer::PointerServer(std::uint64_t epoch, std::function<void(msg::PointerTarget&)> publish)
     : epoch_(epoch), publish_(std::move(publish)) {}
 
-void PointerDesk::describe(const std::vector<msg::PortDescription>& ports,
-                           const std::vector<msg::PortFrame>& frames, std::int64_t now_nsec) {
+void PointerServer::describe(const std::vector<msg::PortDescription>& ports,
+                             const std::vector<msg::PortFrame>& frames, std::int64_t now_nsec) {
   {
     const std::lock_guard lock(mutex_);
     for (auto& [id, device] : devices_) release(id, device, now_nsec);
@@ -113,16 +113,16 @@ void PointerDesk::describe(const std::vector<msg::PortDescription>& ports,
   report_change();
 }
 
-bool PointerDesk::is_held(const Device& device, std::int64_t now_nsec) const noexcept {
+bool PointerServer::is_held(const Device& device, std::int64_t now_nsec) const noexcept {
   return device.page != 0 && now_nsec - device.spoken_nsec < kSilenceNsec;
 }
 
-bool PointerDesk::is_present(const Device& device, std::int64_t now_nsec) noexcept {
+bool PointerServer::is_present(const Device& device, std::int64_t now_nsec) noexcept {
   return device.state && now_nsec - device.state_nsec <= kAbsentNsec;
 }
 
-void PointerDesk::drag(std::uint32_t page, const DragRequest& request,
-                       const std::vector<float>& positions_m, std::int64_t now_nsec) {
+void PointerServer::drag(std::uint32_t page, const DragRequest& request,
+                         const std::vector<float>& positions_m, std::int64_t now_nsec) {
   {
     const std::lock_guard lock(mutex_);
     if (request.port >= ports_.size()) return;
@@ -160,8 +160,8 @@ void PointerDesk::drag(std::uint32_t page, const DragRequest& request,
 
 /// The page takes hold of the port: its coordinates are where it is now. If no page held the device, so
 /// are those of its other ports.
-void PointerDesk::take_hold(Device& device, const Port& taken, std::uint32_t page,
-                            const std::vector<float>& positions_m, std::int64_t now_nsec) {
+void PointerServer::take_hold(Device& device, const Port& taken, std::uint32_t page,
+                              const std::vector<float>& positions_m, std::int64_t now_nsec) {
   const bool is_first = !is_held(device, now_nsec);
   if (is_first) {
     device.held = 0;
@@ -182,13 +182,13 @@ void PointerDesk::take_hold(Device& device, const Port& taken, std::uint32_t pag
 }
 
 /// The coordinates of the port stay where they are.
-void PointerDesk::let_go(Device& device, const Port& port) noexcept {
+void PointerServer::let_go(Device& device, const Port& port) noexcept {
   device.held &= ~mask_of(port.axes);
   for (const std::uint32_t axis : port.axes) device.wanted_m[axis] = device.target_m[axis];
 }
 
 /// Moves the targets towards what the page wants, for the time since they moved last.
-void PointerDesk::lead(Device& device, std::int64_t now_nsec) noexcept {
+void PointerServer::lead(Device& device, std::int64_t now_nsec) noexcept {
   const std::int64_t elapsed_nsec =
       std::clamp(now_nsec - device.led_nsec, std::int64_t{0}, kSilenceNsec);
   device.led_nsec = now_nsec;
@@ -198,15 +198,15 @@ void PointerDesk::lead(Device& device, std::int64_t now_nsec) noexcept {
         std::clamp(device.wanted_m[axis] - device.target_m[axis], -longest_m, longest_m);
 }
 
-void PointerDesk::release(std::uint32_t device_id, Device& device, std::int64_t now_nsec) {
+void PointerServer::release(std::uint32_t device_id, Device& device, std::int64_t now_nsec) {
   if (device.page == 0) return;
   device.page = 0;
   device.held = 0;
   send(device_id, device, 0, now_nsec);
 }
 
-void PointerDesk::send(std::uint32_t device_id, Device& device, std::uint64_t event,
-                       std::int64_t now_nsec) {
+void PointerServer::send(std::uint32_t device_id, Device& device, std::uint64_t event,
+                         std::int64_t now_nsec) {
   if (!device.state) return;  // no such device has reported itself
   device.spoken_nsec = now_nsec;
   msg::PointerTarget target;
@@ -223,7 +223,7 @@ void PointerDesk::send(std::uint32_t device_id, Device& device, std::uint64_t ev
   if (device.sent.size() > kSentKept) device.sent.pop_front();
 }
 
-void PointerDesk::leave(std::uint32_t page, std::int64_t now_nsec) {
+void PointerServer::leave(std::uint32_t page, std::int64_t now_nsec) {
   {
     const std::lock_guard lock(mutex_);
     for (auto& [id, device] : devices_) {
@@ -234,7 +234,7 @@ void PointerDesk::leave(std::uint32_t page, std::int64_t now_nsec) {
   report_change();
 }
 
-void PointerDesk::take(const msg::PointerState& state, std::int64_t now_nsec) {
+void PointerServer::take(const msg::PointerState& state, std::int64_t now_nsec) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = devices_.find(state.device_id());
@@ -256,12 +256,12 @@ void PointerDesk::take(const msg::PointerState& state, std::int64_t now_nsec) {
   report_change();
 }
 
-std::uint64_t PointerDesk::version() const {
+std::uint64_t PointerServer::version() const {
   const std::lock_guard lock(mutex_);
   return version_;
 }
 
-std::string PointerDesk::text(std::uint32_t page, std::int64_t now_nsec) const {
+std::string PointerServer::text(std::uint32_t page, std::int64_t now_nsec) const {
   const std::lock_guard lock(mutex_);
   Json list = Json::array();
   for (std::size_t i = 0; i < ports_.size(); ++i) {
@@ -285,7 +285,7 @@ std::string PointerDesk::text(std::uint32_t page, std::int64_t now_nsec) const {
   return Json{{"type", "pointer"}, {"page", page}, {"ports", std::move(list)}}.dump();
 }
 
-void PointerDesk::report_change() const {
+void PointerServer::report_change() const {
   if (changed_) changed_();
 }
 
