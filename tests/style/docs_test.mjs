@@ -87,13 +87,13 @@ function sentencesOf(text) {
 }
 
 test('the sentences of the documents have at most 25 words', () => {
-  const MOST_WORDS = 25;
+  const MAX_WORDS = 25;
   const long = [];
   let count = 0;
   for (const { name, text } of documents.filter((document) => document.name !== 'CHANGELOG.md')) {
     for (const sentence of sentencesOf(text)) {
       const words = sentence.split(/\s+/).filter((word) => /\w/.test(word)).length;
-      if (words > MOST_WORDS) long.push(`${name}, ${words} words: ${sentence.trim()}`);
+      if (words > MAX_WORDS) long.push(`${name}, ${words} words: ${sentence.trim()}`);
       count += 1;
     }
   }
@@ -122,4 +122,26 @@ test('programs, benchmarks and suites that documents name exist', () => {
       assert.ok(sources.includes(`TEST(${suite},`), `${name}: no tests ${suite}`);
     }
   }
+});
+
+test('the functions of classes that documents name exist', () => {
+  const headers = ['cli', 'device_node', 'node', 'record_node', 'sim_node', 'viz_node'].flatMap((folder) => filesBelow(join(root, folder), /\.h$/)).map(read);
+  let functions = 0;
+  for (const { name, text } of documents) {
+    if (name === 'CHANGELOG.md') continue; // of versions before
+    for (const [, type, called] of text.matchAll(/`([A-Z]\w+)::([a-z]\w+)/g)) {
+      const own = headers.filter((header) => new RegExp(`\\b(class|struct) ${type}\\b[^;]*\\{`).test(header));
+      assert.ok(own.some((header) => new RegExp(`\\b${called}\\b`).test(header)), `${name}: ${type}::${called}`);
+      functions += 1;
+    }
+  }
+  assert.ok(functions > 10, `${functions} functions found`);
+});
+
+test('docs/device.md names the functions that a driver of hardware has to write', () => {
+  const [, table] = read(join(root, 'docs/device.md')).match(/functions are left to write:\n\n(.*?)\n\n/s);
+  const named = [...table.matchAll(/^\| `(\w+)`/gm)].map(([, called]) => called);
+  const header = read(join(root, 'device_node/drivers/hardware.h'));
+  const pure = [...header.matchAll(/\bvirtual [^;{]*?\b(\w+)\([^;{]*= 0;/g)].map(([, called]) => called);
+  assert.deepEqual(named.sort(), pure.sort());
 });

@@ -5,10 +5,11 @@ import fs from 'node:fs';
 import path from 'node:path';
 
 const folder = path.join(process.argv[2], 'viz_node/web/page');
-const files = fs.readdirSync(folder).filter((name) => name.endsWith('.ts'));
+const files = fs.readdirSync(folder, { recursive: true }).filter((name) => name.endsWith('.ts'));
 const imports = new Map(files.map((name) => {
   const text = fs.readFileSync(path.join(folder, name), 'utf8');
-  return [name, [...text.matchAll(/\b(?:from|import) '\.\/([^']+)'/g)].map(([, imported]) => imported)];
+  const found = [...text.matchAll(/\b(?:from |import |import\(|new URL\()'(\.\.?\/[^'?]+)/g)].map(([, imported]) => path.join(path.dirname(name), imported));
+  return [name, found.filter((imported) => imported.endsWith('.ts'))];
 }));
 
 const sound = new Set();
@@ -23,6 +24,13 @@ function follow(name, trail) {
   sound.add(name);
 }
 for (const name of files) follow(name, []);
+for (const [name, found] of imports) {
+  const missing = found.find((imported) => !imports.has(imported));
+  if (missing) {
+    console.log(`${name} imports ${missing}, which this test does not see`);
+    process.exit(1);
+  }
+}
 
 const count = [...imports.values()].flat().length;
 if (count < 20) {
