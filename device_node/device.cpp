@@ -23,9 +23,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr int kLoopPriority = 80;                      // SCHED_FIFO
-constexpr auto kLookAround = milliseconds(100);        // for a scene, while there is none
-constexpr double kLooksPerSecond = 50.0;               // after the guardian
+constexpr auto kScenePollPeriod = milliseconds(100);   // for a scene, while there is none
+constexpr double kGuardianChecksPerSecond = 50.0;      // after the guardian
 constexpr auto kRepeatAfter = milliseconds(100);       // of silence in lockstep
 constexpr auto kLockstepPatience = milliseconds(500);  // of silence before the scene counts as lost
 constexpr std::int64_t kSampleAgain = 5'000'000;       // after the pace, in slow motion [ns]
@@ -82,7 +81,7 @@ void Device::run() {
       play(part_.role);
     } else {
       record_unused();
-      scenes_.wait_for_another(part_, kLookAround);
+      scenes_.wait_for_another(part_, kScenePollPeriod);
       watch_guardian();
       phases_.report(node::monotonic_nsec());
     }
@@ -146,7 +145,7 @@ void Device::play(Role role) {
 
 void Device::ask_for_realtime() {
   if (std::exchange(realtime_asked_, true)) return;
-  const node::RealtimeGrant grant = node::make_realtime(kLoopPriority);
+  const node::RealtimeGrant grant = node::make_realtime(node::kLoopPriority);
   spdlog::info("loop thread: {}, memory {}",
                grant.fifo ? "realtime priority" : "no realtime priority (not permitted)",
                grant.memory_locked ? "locked" : "not locked");
@@ -232,9 +231,9 @@ void Device::leave(Exchange& exchange) {
 
 /// Looks after the guardian now and then, for it costs a system call.
 void Device::keep_guardian() const noexcept {
-  const auto ticks_per_look =
-      static_cast<std::uint64_t>(std::max(1.0, config_.layout.rate_hz / kLooksPerSecond));
-  if (meter_.ticks() % ticks_per_look == 0) watch_guardian();
+  const auto ticks_per_check =
+      static_cast<std::uint64_t>(std::max(1.0, config_.layout.rate_hz / kGuardianChecksPerSecond));
+  if (meter_.ticks() % ticks_per_check == 0) watch_guardian();
 }
 
 /// Reports a change of phase.

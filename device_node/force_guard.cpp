@@ -68,9 +68,9 @@ const AxisValues& ForceGuard::tick(double age_s, const AxisValues& position_m, d
     return output_;
   }
   energy_.observe(held_, position_m);
-  const double grown = share_after(ticks_alive_ + 1);
-  const double grown_before = ticks_alive_ == 0 ? 0.0 : share_after(ticks_alive_);
-  if (grown > grown_before) energy_.allow_for_ramp(wanted_, grown - grown_before);
+  const double ramp = share_after(ticks_alive_ + 1);
+  const double ramp_before = ticks_alive_ == 0 ? 0.0 : share_after(ticks_alive_);
+  if (ramp > ramp_before) energy_.allow_for_ramp(wanted_, ramp - ramp_before);
   ++ticks_alive_;
   held_ = output_;
   changed_.fill(0.0);
@@ -88,11 +88,11 @@ void ForceGuard::change(double age_s, double share, double since_s) noexcept {
   // What can still be brought to 0 at the slew rate before the watchdog bites.
   const double fading_n = settings_.slew_n_per_s * (settings_.watchdog_s - age_s);
   const double limit_n = std::min(settings_.limit_n, fading_n);
-  const double grown = share_after(ticks_alive_);
+  const double ramp = share_after(ticks_alive_);
 
   for (std::size_t a = 0; a < output_.size(); ++a) {
     const double speed = energy_.speed_m_per_s(a);
-    const double damped = grown * wanted_[a] - energy_.damping_n(a);
+    const double damped = ramp * wanted_[a] - energy_.damping_n(a);
     const double wanted =
         within_power(std::clamp(damped, -settings_.limit_n, settings_.limit_n), speed);
     const double before = output_[a];

@@ -8,7 +8,7 @@
 
 namespace cordis::device {
 
-/// What the ports of a scene want of one device.
+/// What the ports of a scene need of one device.
 struct PortAssignment {
   bool wanted = false;       ///< the scene has a port for the device
   Role role = Role::kMass;   ///< in all its ports

@@ -13,7 +13,7 @@ namespace cordis::device {
 namespace {
 
 constexpr std::int64_t kLongestWait = 1'000'000'000;  // [ns]
-constexpr auto kLook = std::chrono::milliseconds(5);
+constexpr auto kPollPeriod = std::chrono::milliseconds(5);
 
 constexpr std::uint64_t kPresent = 1;
 constexpr std::uint64_t kWanted = 2;
@@ -57,7 +57,7 @@ SceneWatch::Part SceneWatch::part() const noexcept {
 void SceneWatch::wait_for_another(const Part& known, std::chrono::milliseconds at_most) const {
   const auto limit = std::chrono::steady_clock::now() + at_most;
   while (part() == known && std::chrono::steady_clock::now() < limit)
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPollPeriod);
 }
 
 std::string SceneWatch::refusal() const {

@@ -68,7 +68,7 @@ class SceneWatch {
   msg::NodeStatus status_;          // of the thread, as the next four
   std::uint64_t epoch_ = 0;         // of the newest scene
   double gesture_rate_hz_ = 0.0;    // of it
-  std::uint64_t status_epoch_ = 0;  // of the sim_node heard last
+  std::uint64_t status_epoch_ = 0;  // of the last sim_node that reported
   double target_rate_hz_ = 0.0;     // of it
   node::RepeatedEvent questions_{"other scenes are questionable"};  // of the thread
   node::RepeatedEvent changes_{"the part of the device in the scene changed", spdlog::level::info};

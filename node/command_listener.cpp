@@ -12,7 +12,7 @@ namespace cordis::node {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{1000};
-constexpr std::chrono::milliseconds kLookAtWork{10};
+constexpr std::chrono::milliseconds kWorkPollPeriod{10};
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void CommandListener::loop() {
       if (auto reply = server_.take(command)) static_cast<void>(writer_.write(*reply));
     }
     if (auto reply = server_.take_finished()) static_cast<void>(writer_.write(*reply));
-    if (!ending_) reader_.wait(server_.is_working() ? kLookAtWork : kLongestWait);
+    if (!ending_) reader_.wait(server_.is_working() ? kWorkPollPeriod : kLongestWait);
   }
 }
 

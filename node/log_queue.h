@@ -37,8 +37,8 @@ class LogQueue {
   LogQueue() noexcept;
 
   /// @return false when there is no room, and the line is lost
-  bool push(spdlog::log_clock::time_point time, spdlog::level::level_enum level,
-            std::string_view text) noexcept;
+  [[nodiscard]] bool push(spdlog::log_clock::time_point time, spdlog::level::level_enum level,
+                          std::string_view text) noexcept;
 
   /// Swaps the oldest line with `line`; false when there is none.
   [[nodiscard]] bool pop(LogLine& line) noexcept;

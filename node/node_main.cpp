@@ -11,6 +11,7 @@
 #include "node/background_work.h"
 #include "node/inherited_priority.h"
 #include "node/log.h"
+#include "node/paced_loop.h"
 #include "node/runtime_folder.h"
 #include "node/session_network.h"
 #include "node/session_registry.h"
@@ -22,8 +23,8 @@ namespace cordis::node {
 namespace {
 
 constexpr int kRuntimeFailure = 1;
-constexpr int kBadInput = 2;
-constexpr int kDdsPriority = 40;  // SCHED_FIFO; the loops have 80
+constexpr int kDdsPriority = 40;  // SCHED_FIFO
+static_assert(kDdsPriority < kLoopPriority);
 
 struct Arguments {
   std::string launch_file;

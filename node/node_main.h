@@ -13,6 +13,8 @@
 
 namespace cordis::node {
 
+inline constexpr int kBadInput = 2;  ///< a node ends with it: a file or the command line is wrong
+
 /// A node as its command line and launch file describe it.
 struct NodeStart {
   config::Launch launch;

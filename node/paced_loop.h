@@ -7,6 +7,8 @@
 
 namespace cordis::node {
 
+inline constexpr int kLoopPriority = 80;  ///< SCHED_FIFO, for the force loops
+
 /// What the operating system granted to a loop thread.
 struct RealtimeGrant {
   bool fifo = false;           ///< SCHED_FIFO

@@ -42,7 +42,7 @@ std::vector<SessionRecord> running_sessions(const std::filesystem::path& folder)
 /// "domain 3", "domains 3 and 7"
 std::string domains_text(const std::vector<SessionRecord>& sessions);
 
-/// What a process wants to be recorded as.
+/// The entry that a process asks for.
 struct SessionRequest {
   std::string session;
   std::optional<int> domain;  ///< absent: that of the running session of this name, else a free one

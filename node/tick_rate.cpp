@@ -9,13 +9,13 @@ constexpr std::int64_t kMinNsec = 100'000'000;
 
 }  // namespace
 
-double TickRate::rate(const Look& older, const Look& newer) noexcept {
+double TickRate::rate(const Reading& older, const Reading& newer) noexcept {
   return static_cast<double>(newer.ticks - older.ticks) /
          (static_cast<double>(newer.nsec - older.nsec) * 1e-9);
 }
 
 void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
-  const Look now{now_nsec, ticks};
+  const Reading now{now_nsec, ticks};
   if (first_.ticks == 0) {
     if (ticks > 0 && now.nsec > first_.nsec) mean_hz_ = rate(first_, now);
     first_ = now;

@@ -20,14 +20,14 @@ class TickRate {
   double mean_hz() const noexcept { return mean_hz_; }  ///< since the ticks began, or restart()
 
  private:
-  struct Look {
+  struct Reading {
     std::int64_t nsec;
     std::uint64_t ticks;
   };
-  static double rate(const Look& older, const Look& newer) noexcept;
+  static double rate(const Reading& older, const Reading& newer) noexcept;
 
-  Look first_;  // when ticks had begun
-  Look last_;
+  Reading first_;  // when ticks had begun
+  Reading last_;
   double reached_hz_ = 0.0;
   double mean_hz_ = 0.0;
 };

@@ -10,7 +10,7 @@
 namespace cordis::node {
 namespace {
 
-constexpr auto kLookForWriters = std::chrono::milliseconds(20);
+constexpr auto kWriterPollPeriod = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void TopicFollower::loop() {
     lock.unlock();
     update();
     lock.lock();
-    woken_.wait_for(lock, kLookForWriters, [this] { return ending_; });
+    woken_.wait_for(lock, kWriterPollPeriod, [this] { return ending_; });
   }
 }
 

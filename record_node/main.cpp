@@ -22,7 +22,7 @@ namespace {
 
 using namespace cordis;
 
-constexpr auto kLook = std::chrono::milliseconds(500);
+constexpr auto kPollPeriod = std::chrono::milliseconds(500);
 
 void fill(msg::NodeStatus& status, const record::Recorder& recorder, const std::string& file) {
   const record::RecorderFigures done = recorder.figures();
@@ -38,7 +38,7 @@ void fill(msg::NodeStatus& status, const record::Recorder& recorder, const std::
 /// Says so once when messages begin to be dropped, and when the file takes no more.
 class Watch {
  public:
-  void look(const record::RecorderFigures& done) {
+  void update(const record::RecorderFigures& done) {
     if (done.dropped > 0 && !done.is_over && !dropped_) {
       dropped_ = true;
       spdlog::warn("the disk is too slow: messages are dropped, frames before gestures");
@@ -149,7 +149,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                                    });
     commands.start();
     Watch watch;
-    while (!node::wait_for_stop(kLook)) watch.look(recorder.figures());
+    while (!node::wait_for_stop(kPollPeriod)) watch.update(recorder.figures());
   }
   return ending.close() ? 0 : 1;
 }

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 constexpr int kNice = 10;
 constexpr int kRefused = 2;  // of `cordis check`: it reports why as well
-constexpr auto kLook = 5ms;
+constexpr auto kPollPeriod = 5ms;
 
 /// @return the process; 0 when it cannot be started
 pid_t start(const std::vector<std::string>& command, int output) {
@@ -81,7 +81,7 @@ bool PlanReport::has_ended(std::chrono::milliseconds at_most) noexcept {
   for (const auto end = std::chrono::steady_clock::now() + at_most;;) {
     if (waitpid(process_, &status_, WNOHANG) != 0) return true;
     if (std::chrono::steady_clock::now() >= end) return false;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPollPeriod);
   }
 }
 

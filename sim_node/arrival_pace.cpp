@@ -12,7 +12,7 @@ namespace cordis::sim {
 namespace {
 
 constexpr std::uint32_t kMaxMessages = 64;  // in a period, each of which wakes the loop
-constexpr double kLooks = 16.0;             // in a period, at what comes beyond them
+constexpr double kPolls = 16.0;             // in a period, at what comes beyond them
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::optional<node::LateCause> ArrivalPace::wait(Simulation& simulation, DeviceL
 bool ArrivalPace::wait_for_samples(Simulation& simulation, DeviceLink& devices, InputLog& inputs) {
   dds::Arrival& arrival = devices.arrival();
   const std::int64_t patience_end = node::monotonic_nsec() + kLongestWait;
-  const auto between_looks = static_cast<std::int64_t>(1e9 / rate_hz() / kLooks);
+  const auto between_polls = static_cast<std::int64_t>(1e9 / rate_hz() / kPolls);
   while (!node::stop_requested()) {
     const std::uint32_t seen = arrival.count();
     devices.receive(simulation, inputs);
@@ -58,7 +58,7 @@ bool ArrivalPace::wait_for_samples(Simulation& simulation, DeviceLink& devices, 
     if (seen - waited_from_ < kMaxMessages) {
       arrival.wait_until(seen, end);
     } else {
-      node::sleep_until(std::min(now + between_looks, end));
+      node::sleep_until(std::min(now + between_polls, end));
     }
   }
   return true;

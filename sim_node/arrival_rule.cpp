@@ -3,7 +3,11 @@
 
 #include <algorithm>
 
+#include "sim_node/scene/sections/assembly.h"
+
 namespace cordis::sim {
+
+static_assert(ArrivalRule::kMaxDevices == scene::kMaxDevices);
 namespace {
 
 constexpr double kGain = 1.0 / 8.0;    // of an observed interval

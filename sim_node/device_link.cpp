@@ -169,7 +169,7 @@ bool DeviceLink::holds(const Sample& sample, std::vector<HeldSample<Sample>>& he
     *known = {sample, 0, now};
     return true;
   }
-  known->waited_nsec += std::min(now - std::exchange(known->looked_nsec, now), kLongestTurn);
+  known->waited_nsec += std::min(now - std::exchange(known->checked_nsec, now), kLongestTurn);
   known->sample = sample;
   return known->waited_nsec < kLongestHold;
 }

@@ -79,7 +79,7 @@ class DeviceLink {
   struct HeldSample {
     Sample sample;
     std::int64_t waited_nsec = 0;  // while this process ran
-    std::int64_t looked_nsec = 0;
+    std::int64_t checked_nsec = 0;
   };
   template <class Reader, class Sample>
   void take_all(Reader& reader, Sample& sample, std::vector<HeldSample<Sample>>& held,

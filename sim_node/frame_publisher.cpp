@@ -10,10 +10,10 @@
 namespace cordis::sim {
 namespace {
 
-constexpr std::chrono::milliseconds kLookForReader{2};
+constexpr std::chrono::milliseconds kReaderPollPeriod{2};
 constexpr std::uint64_t kBatchesAhead = 8;  // of a reader that gets them all, of 32 that DDS keeps
 constexpr std::chrono::milliseconds kLongestPause{1000};  // of a scene whose reader takes nothing
-// Of a scene beside a reader that has stopped. Fast DDS does not name the reader that is behind: one
+// The pause of a scene beside a reader that has stopped. Fast DDS does not name the reader that is behind: one
 // that lives has acknowledged within two heartbeats of scene/signals.
 constexpr std::chrono::milliseconds kPauseBesideStopped{100};
 
@@ -67,7 +67,8 @@ bool FramePublisher::wait_for_signal_reader(const std::string& node, bool is_pac
                                             std::chrono::milliseconds at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
   while (!signal_writer_.has_reader_of(node)) {
-    if (node::wait_for_stop(kLookForReader) || std::chrono::steady_clock::now() > end) return false;
+    if (node::wait_for_stop(kReaderPollPeriod) || std::chrono::steady_clock::now() > end)
+      return false;
   }
   is_paced_ = is_paced;
   return true;

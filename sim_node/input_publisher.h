@@ -30,14 +30,14 @@ class InputPublisher {
   /// Publishes what has come: at once when it is much, else every 30 ms at most. The destructor
   /// publishes the rest.
   /// @return false when DDS did not take it
-  bool publish();
+  [[nodiscard]] bool publish();
 
  private:
   void add(InputRecord& record);
   void add_sample(const InputRecord& record);
   void add_event(const InputRecord& record, msg::InputKind kind);
   bool collect();
-  bool write();
+  [[nodiscard]] bool write();
 
   InputLog& log_;
   dds::Writer<msg::SceneInputs> writer_;

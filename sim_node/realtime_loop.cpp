@@ -12,7 +12,6 @@
 namespace cordis::sim {
 namespace {
 
-constexpr int kLoopPriority = 80;
 constexpr std::int64_t kFollowed = 250'000'000;  // devices follow another pace within [ns]
 
 /// Ticks per second of real time.
@@ -23,12 +22,12 @@ double pace_of(const SceneLoop& loop) noexcept {
 }  // namespace
 
 void run_realtime(SceneLoop& loop, node::StatusPublisher& status) {
-  const node::RealtimeGrant grant = node::make_realtime(kLoopPriority);
+  const node::RealtimeGrant grant = node::make_realtime(node::kLoopPriority);
   spdlog::info("real-time priority {}, memory {}",
                grant.fifo ? "granted" : "not permitted, going on without",
                grant.memory_locked ? "locked" : "not locked");
   loop.simulation().world().team().run([](std::size_t member) noexcept {
-    if (member > 0) node::make_realtime(kLoopPriority);
+    if (member > 0) node::make_realtime(node::kLoopPriority);
   });
   ArrivalPace pace(pace_of(loop));
   std::int64_t changed_nsec = node::monotonic_nsec() - kFollowed;  // the pace, last

@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kRepeatAfter = 250ms;
-constexpr auto kLook = 5ms;
+constexpr auto kPollPeriod = 5ms;
 // Whoever is there says so within this time, twice over. A longer timeout is for a machine on which
 // all takes longer.
 constexpr auto kLongestDiscovery = 2s;
@@ -67,7 +67,7 @@ std::vector<msg::ControlReply> ControlLine::ask(const std::string& target, msg::
       if (commands_.write(command)) sent_ = true;
       send_at = now + kRepeatAfter;
     }
-    replies_.wait(kLook);
+    replies_.wait(kPollPeriod);
     msg::ControlReply reply;
     while (replies_.take(reply)) {
       if (reply.command_id() == command.command_id() && reply.sender() == command.sender())

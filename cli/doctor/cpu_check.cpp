@@ -5,14 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "cli/run/machine_watch.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {
-namespace {
-
-constexpr double kMuchSteal = 0.01;
-
-}  // namespace
+namespace {}  // namespace
 
 Finding check_governor(const machine::SystemFiles& files) {
   const std::string folder = "sys/devices/system/cpu";
@@ -50,7 +47,7 @@ Finding check_steal(std::optional<double> stolen_share) {
   finding.text =
       fmt::format("the hypervisor took {:.2g} % of the processor time", 100.0 * *stolen_share);
   if (*stolen_share == 0.0) finding.text = "no hypervisor took processor time";
-  if (*stolen_share < kMuchSteal) return finding;
+  if (*stolen_share < MachineWatch::kMuchStolenShare) return finding;
   finding.level = Level::kWarning;
   finding.text += ": this machine shares its cores with others";
   finding.advice = "use a machine of your own, or one with dedicated cores";

@@ -8,10 +8,11 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
+#include "node/paced_loop.h"
+
 namespace cordis::cli {
 namespace {
 
-constexpr int kLoopPriority = 80;
 constexpr std::size_t kReservedByANode = std::size_t{1} << 30;  // [bytes]
 
 std::string text_of_limit(decltype(RLIMIT_RTPRIO) resource) {
@@ -24,7 +25,7 @@ bool may_have_fifo() {
   bool granted = false;
   std::thread([&granted] {
     sched_param parameters{};
-    parameters.sched_priority = kLoopPriority;
+    parameters.sched_priority = node::kLoopPriority;
     granted = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
   }).join();
   return granted;
@@ -58,7 +59,7 @@ Finding check_priority(const Permissions& permissions) {
   finding.values = {{"fifo_permitted", permissions.fifo},
                     {"rlimit_rtprio", permissions.priority_limit}};
   if (permissions.fifo) {
-    finding.text = "permitted (SCHED_FIFO " + std::to_string(kLoopPriority) + ")";
+    finding.text = "permitted (SCHED_FIFO " + std::to_string(node::kLoopPriority) + ")";
     return finding;
   }
   finding.level = Level::kWarning;

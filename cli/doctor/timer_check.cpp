@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/run/machine_watch.h"
 #include "node/config/count_text.h"
 
 namespace cordis::cli {
@@ -15,8 +16,6 @@ using machine::DeadlineRecord;
 
 constexpr long kCoarseNsec = 100'000;
 constexpr double kTooManyLost = 0.05;  // periods: the device would be stopped again and again
-constexpr double kManyLate = 0.01;     // wake-ups
-constexpr double kLongStallS = 0.01;   // half of the watchdog of a device
 constexpr std::size_t kMaxShown = 8;   // cores in the table; all are in the JSON
 
 nlohmann::json values_of(int core, const char* priority, const DeadlineRecord& record) {
@@ -118,7 +117,7 @@ Finding check_wakeups(const std::vector<CoreWakeups>& cores, double duration_s) 
     finding.level = Level::kUnusable;
     finding.text +=
         fmt::format("; {:.2g} % of the ticks of a force loop would be lost", 100.0 * sum.lost);
-  } else if (sum.late > kManyLate || sum.worst_s > kLongStallS) {
+  } else if (sum.late > MachineWatch::kManyLateShare || sum.worst_s > MachineWatch::kLongStallS) {
     finding.level = Level::kWarning;
     finding.text += ": forces are late or let go now and then";
   } else {

@@ -16,9 +16,9 @@ namespace cordis::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kLook = std::chrono::milliseconds(100);
+constexpr auto kPollPeriod = std::chrono::milliseconds(100);
 constexpr auto kAfterTheFirst = std::chrono::milliseconds(1500);  // a status comes twice a second
-constexpr auto kLongestLook = std::chrono::seconds(5);
+constexpr auto kLongestPoll = std::chrono::seconds(5);
 
 /// The session that a writer of another participant belongs to; empty when it is none of Cordis.
 std::string session_of(const dds::WriterId& writer, const std::vector<dds::Peer>& peers) {
@@ -35,9 +35,9 @@ DomainSessions sessions_in_domain(SessionAddress address) {
   address.session.clear();
   TopicListener listener(address, msg::TOPIC_STATUS, /*with_bytes=*/true);
   std::map<std::string, NodeHosts> sessions;
-  auto end = Clock::now() + kLongestLook;
+  auto end = Clock::now() + kLongestPoll;
   while (Clock::now() < end) {
-    const auto messages = listener.take(kLook);
+    const auto messages = listener.take(kPollPeriod);
     const std::vector<dds::Peer> peers = listener.participant().peers();
     for (const ReceivedMessage& message : messages) {
       msg::NodeStatus status;

@@ -29,7 +29,7 @@ std::string MachineWatch::sentence(const LateTickSum& late) const {
 
 std::string MachineWatch::sentence_when_repeated(const LateTickSum& late) {
   if (is_reported_ || late.by_machine < kRepeated) return "";
-  if (figures_().watched_s < machine::TimerWatch::kFirstLookS) return "";
+  if (figures_().watched_s < machine::TimerWatch::kFirstCheckS) return "";
   const std::string text = sentence(late);
   is_reported_ = !text.empty();
   return text;

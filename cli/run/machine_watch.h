@@ -25,7 +25,7 @@ class MachineWatch {
   /// unless most late ticks are the machine's and its timers were late or its time was stolen.
   std::string sentence(const LateTickSum& late) const;
 
-  /// The sentence of a running session: once, after TimerWatch::kFirstLookS, if late ticks repeat.
+  /// The sentence of a running session: once, after TimerWatch::kFirstCheckS, if late ticks repeat.
   std::string sentence_when_repeated(const LateTickSum& late);
 
  private:

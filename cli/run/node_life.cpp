@@ -8,9 +8,12 @@
 #include <unistd.h>
 
 #include "cli/exit_code.h"
+#include "node/node_main.h"
 
 namespace cordis::cli {
 namespace {
+
+static_assert(kBadInput == node::kBadInput);  // nodes end with the codes of `cordis`
 
 bool is_death(const Ending& ending) {
   return ending.exit_code() != kSuccess && ending.exit_code() != kBadInput;

@@ -19,15 +19,15 @@ class ColumnSummary {
     last_ = value;
     if (!std::isfinite(value)) return;
     ++count_;
-    least_ = value < least_ ? value : least_;
-    largest_ = value > largest_ ? value : largest_;
+    min_ = value < min_ ? value : min_;
+    max_ = value > max_ ? value : max_;
     sum_ += value;
     sum_of_squares_ += value * value;
   }
 
   std::uint64_t count() const noexcept { return count_; }  ///< number of finite values
-  double least() const noexcept { return least_; }
-  double largest() const noexcept { return largest_; }
+  double min() const noexcept { return min_; }
+  double max() const noexcept { return max_; }
   double last() const noexcept { return last_; }
   double mean() const noexcept { return sum_ / static_cast<double>(count_); }
   double root_mean_square() const noexcept {
@@ -38,8 +38,8 @@ class ColumnSummary {
   nlohmann::ordered_json json(const std::string& unit) const {
     CORDIS_ASSERT(count_ > 0);
     return {{"unit", unit},
-            {"least", least()},
-            {"largest", largest()},
+            {"least", min()},
+            {"largest", max()},
             {"mean", mean()},
             {"root_mean_square", root_mean_square()},
             {"last", last()}};
@@ -47,8 +47,8 @@ class ColumnSummary {
 
  private:
   std::uint64_t count_ = 0;
-  double least_ = std::numeric_limits<double>::infinity();
-  double largest_ = -std::numeric_limits<double>::infinity();
+  double min_ = std::numeric_limits<double>::infinity();
+  double max_ = -std::numeric_limits<double>::infinity();
   double last_ = 0.0;
   double sum_ = 0.0;
   double sum_of_squares_ = 0.0;

@@ -182,7 +182,7 @@ std::vector<Trajectory> read_moves(MappingReader& hand, std::size_t axis_count,
     const double duration_s = reader.required_number("in_s", Range::not_negative());
     std::vector<double> target = reader.required_numbers("to_m");
     reader.finish();
-    if (reader.ok() && begin_s < free_from_s - Trajectory::kTimeGrain) {
+    if (reader.ok() && begin_s < free_from_s - Trajectory::kTimeResolution) {
       reader.error_at("at_s", "a move must not begin before the one before it has ended");
     }
     if (reader.ok() && target.size() != 1 && target.size() != axis_count) {
@@ -202,7 +202,7 @@ std::vector<Trajectory> read_moves(MappingReader& hand, std::size_t axis_count,
     free_from_s = begin_s + duration_s;
   }
   const double repeat_s = hand.optional_number("repeat_s", 0.0, Range::not_negative());
-  if (repeat_s != 0.0 && repeat_s < free_from_s - Trajectory::kTimeGrain) {
+  if (repeat_s != 0.0 && repeat_s < free_from_s - Trajectory::kTimeResolution) {
     hand.error_at("repeat_s", "repeat_s must not be less than the end of the last move");
   }
   if (problems.has_errors()) return {};

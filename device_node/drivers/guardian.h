@@ -55,7 +55,7 @@ class Guardian {
   };
   class Life;
 
-  bool start() noexcept;
+  [[nodiscard]] bool start() noexcept;
   void send(int file) noexcept;
   bool has_ended() noexcept;
 

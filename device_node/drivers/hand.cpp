@@ -50,9 +50,9 @@ void Hand::advance(double time_s, double h_s, double force_n) noexcept {
   const double drive = spring + viscosity * rate + force_n;
   const double before = speed_;
   speed_ = (settings_.mass_kg * speed_ + h_s * drive) / (settings_.mass_kg + h_s * viscosity);
-  const double pull_n = spring + viscosity * (rate - speed_);
-  if (std::abs(pull_n) > settings_.force_limit_n) {
-    const double limited = std::copysign(settings_.force_limit_n, pull_n) + force_n;
+  const double coupling_n = spring + viscosity * (rate - speed_);
+  if (std::abs(coupling_n) > settings_.force_limit_n) {
+    const double limited = std::copysign(settings_.force_limit_n, coupling_n) + force_n;
     speed_ = before + h_s * limited / settings_.mass_kg;
   }
   position_ += h_s * speed_;

@@ -112,7 +112,7 @@ bool Mock::read(AxisValues& sensed) noexcept {
 
 bool Mock::write(const AxisValues& commanded) noexcept {
   take_command(commanded);
-  live_until(sub_steps_);
+  step_until(sub_steps_);
   lived_ = 0.0;
   ++period_index_;
   return true;
@@ -120,7 +120,7 @@ bool Mock::write(const AxisValues& commanded) noexcept {
 
 bool Mock::begin_period() noexcept {
   if (std::exchange(is_in_period_, true)) {
-    live_until(sub_steps_);
+    step_until(sub_steps_);
     ++period_index_;
   }
   lived_ = 0.0;
@@ -129,7 +129,7 @@ bool Mock::begin_period() noexcept {
 }
 
 bool Mock::change_command(const AxisValues& commanded, double share) noexcept {
-  live_until(std::clamp(share, 0.0, 1.0) * sub_steps_);
+  step_until(std::clamp(share, 0.0, 1.0) * sub_steps_);
   take_command(commanded);
   return true;
 }
@@ -141,7 +141,7 @@ void Mock::take_command(const AxisValues& commanded) noexcept {
 }
 
 /// Lives on in the present period, in whole sub-steps where it can.
-void Mock::live_until(double sub_step) noexcept {
+void Mock::step_until(double sub_step) noexcept {
   constexpr double kNothing = 1e-9;  // of a sub-step
   while (sub_step - lived_ > kNothing) {
     const double next = std::min(std::floor(lived_ + kNothing) + 1.0, sub_step);

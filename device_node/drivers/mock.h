@@ -61,7 +61,7 @@ class Mock final : public Driver {
 
   double sense(Axis& axis) const noexcept;
   void take_command(const AxisValues& commanded) noexcept;
-  void live_until(double sub_step) noexcept;
+  void step_until(double sub_step) noexcept;
   void step(Axis& axis, double commanded, double from, double to) noexcept;
   double force_of_hand(const Axis& axis) const noexcept;
 

@@ -19,7 +19,7 @@ class Trajectory {
   /// Instants nearer than this are one instant [s]: a time like 0.1 s has no exact binary form. A
   /// jump must not come a sample late for that, nor a move that ends when the next begins be
   /// refused.
-  static constexpr double kTimeGrain = 1e-9;
+  static constexpr double kTimeResolution = 1e-9;
 
   struct Move {
     double begin_s = 0.0;

@@ -23,7 +23,7 @@
 #define WATCHDOG_S 0.02  // an answer is worth nothing at this age
 
 static const int64_t kPeriodNsec = 1000000;
-static const int64_t kLookNsec = 10000000;          // at signals and scenes, while it waits
+static const int64_t kPollPeriodNsec = 10000000;    // at signals and scenes, while it waits
 static const int64_t kRepeatAfterNsec = 100000000;  // of a sample without an answer, in lockstep
 static const int64_t kCheckAfterNsec = 1000000000;  // of the versions, without answers
 static const int64_t kSilenceNsec = 5000000000;     // that is reported
@@ -88,7 +88,7 @@ static void describe(const struct device* device) {
       .plays_liaison = true,
   };
   publish(create_writer(&device->session, &cordis_msg_DeviceDescription_desc,
-                        cordis_msg_TOPIC_DEVICE, QOS_KEPT),
+                        cordis_msg_TOPIC_DEVICE, QOS_TRANSIENT_LOCAL),
           &description);
 }
 
@@ -254,7 +254,7 @@ static void play_in_lockstep(struct device* device) {
       // A motor does not know that time is paused.
       if ((double)waited_nsec * 1e-9 > WATCHDOG_S) act(device, WATCHDOG_S);
       explain_silence(device);
-      wait_for_message(device->waitset, kLookNsec);
+      wait_for_message(device->waitset, kPollPeriodNsec);
       if (!goes_on(device)) return;
     }
     act(device, 0.0);
@@ -311,7 +311,7 @@ int main(int argc, char** argv) {
           .device_id = id_of(argv[3]), .epoch = (uint64_t)now_nsec(), .axis_count = 1}};
   describe(&device);
   device.scenes = create_reader(&device.session, &cordis_msg_SceneDescription_desc,
-                                cordis_msg_TOPIC_DESCRIPTION, QOS_KEPT);
+                                cordis_msg_TOPIC_DESCRIPTION, QOS_TRANSIENT_LOCAL);
   await_scene(&device.session, device.scenes, &device.scene);
   while (!stop_requested()) {
     const cordis_msg_PortDescription* port = find_port(&device);
@@ -322,7 +322,7 @@ int main(int argc, char** argv) {
     printf("scene '%s' has no port for '%s': waiting for one that has\n", device.scene.name,
            device.name);
     while (!stop_requested() && !take_scene(device.scenes, &device.scene))
-      sleep_until(now_nsec() + kLookNsec);
+      sleep_until(now_nsec() + kPollPeriodNsec);
   }
   return 0;
 }

@@ -8,7 +8,7 @@
 #include "session.h"
 #include "topics.h"
 
-static const int64_t kLookNsec = 100000000;
+static const int64_t kPollPeriodNsec = 100000000;
 
 static void print_header(const cordis_msg_SceneDescription* scene) {
   printf("time [s]");
@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   catch_stop_signals();
   const struct session session = join(argv[1], argv[2]);
   const dds_entity_t scenes = create_reader(&session, &cordis_msg_SceneDescription_desc,
-                                            cordis_msg_TOPIC_DESCRIPTION, QOS_KEPT);
+                                            cordis_msg_TOPIC_DESCRIPTION, QOS_TRANSIENT_LOCAL);
   const dds_entity_t reader = frames ? create_reader(&session, &cordis_msg_SceneFrame_desc,
                                                      cordis_msg_TOPIC_FRAME, QOS_STREAM)
                                      : create_reader(&session, &cordis_msg_SceneSignals_desc,
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   cordis_msg_SceneFrame frame = {0};
   cordis_msg_SceneSignals batch = {0};
   while (!stop_requested()) {
-    wait_for_message(waitset, kLookNsec);
+    wait_for_message(waitset, kPollPeriodNsec);
     if (take_scene(scenes, &scene) && !frames) print_header(&scene);
     if (frames) {
       while (take(reader, &frame)) print_frame(&frame);

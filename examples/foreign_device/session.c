@@ -9,10 +9,10 @@
 
 #include "control.h"
 
-enum { LARGEST_DOMAIN = 101, MOST_PEERS = 64 };
+enum { LARGEST_DOMAIN = 101, MAX_PEERS = 64 };
 
-static const int64_t kLookNsec = 20000000;       // for a scene
-static const int64_t kSilenceNsec = 5000000000;  // that is reported
+static const int64_t kPollPeriodNsec = 20000000;  // for a scene
+static const int64_t kSilenceNsec = 5000000000;   // that is reported
 
 static volatile sig_atomic_t stop = 0;
 
@@ -53,9 +53,9 @@ static dds_qos_t* create_qos(enum qos kind) {
   dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        DDS_MSECS(100));
   dds_qset_durability(qos,
-                      kind == QOS_KEPT ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+                      kind == QOS_TRANSIENT_LOCAL ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   static const int32_t depth[] = {
-      [QOS_KEPT] = 1, [QOS_STREAM] = 256, [QOS_GESTURE_REALTIME] = 1, [QOS_GESTURE_LOCKSTEP] = 8};
+      [QOS_TRANSIENT_LOCAL] = 1, [QOS_STREAM] = 256, [QOS_GESTURE_REALTIME] = 1, [QOS_GESTURE_LOCKSTEP] = 8};
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth[kind]);
   return qos;
 }
@@ -145,9 +145,9 @@ void check_wire_versions(const struct session* session) {
   const dds_entity_t reader = checked(
       dds_create_reader(session->participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, NULL, NULL),
       "reader of participants");
-  void* found[MOST_PEERS] = {NULL};
-  dds_sample_info_t info[MOST_PEERS];
-  const int count = dds_read(reader, found, info, MOST_PEERS, MOST_PEERS);
+  void* found[MAX_PEERS] = {NULL};
+  dds_sample_info_t info[MAX_PEERS];
+  const int count = dds_read(reader, found, info, MAX_PEERS, MAX_PEERS);
   for (int i = 0; i < count; ++i) {
     if (!info[i].valid_data) continue;
     const dds_builtintopic_participant_t* peer = found[i];
@@ -186,7 +186,7 @@ void await_scene(const struct session* session, dds_entity_t scenes,
               "session of this host\n");
       is_reported = true;
     }
-    sleep_until(now_nsec() + kLookNsec);
+    sleep_until(now_nsec() + kPollPeriodNsec);
   }
 }
 

@@ -9,7 +9,7 @@
 
 /// Quality of service of a topic: the table in idl/README.md.
 enum qos {
-  QOS_KEPT,              ///< reliable, the newest of each key kept for late joiners
+  QOS_TRANSIENT_LOCAL,   ///< reliable, the newest of each key kept for late joiners
   QOS_STREAM,            ///< reliable, every message counts
   QOS_GESTURE_REALTIME,  ///< best effort, the newest alone
   QOS_GESTURE_LOCKSTEP   ///< reliable, every message counts

@@ -106,14 +106,14 @@ bool Arrival::wait_until(std::uint32_t seen, std::int64_t until_nsec) noexcept {
 }
 
 bool Arrival::poll_until(std::uint32_t seen, std::int64_t until_nsec) noexcept {
-  constexpr int kPausesPerLook = 20;  // at the clock and the socket
+  constexpr int kPausesPerPoll = 20;  // at the clock and the socket
   Attendance attendance(socket_);
   bool is_over = false;
   while (count() == seen && !is_over) {
     const std::int64_t begun = node::thread_processor_nsec();
     SampleSocket::Taken taken = SampleSocket::Taken::kNothing;
     while (count() == seen && !is_over && taken != SampleSocket::Taken::kDatagram) {
-      for (int i = 0; i < kPausesPerLook; ++i) __builtin_ia32_pause();
+      for (int i = 0; i < kPausesPerPoll; ++i) __builtin_ia32_pause();
       taken = attendance.take();
       is_over = node::monotonic_nsec() >= until_nsec;
     }

@@ -33,7 +33,8 @@ class DatagramQueue {
 
   /// One thread at a time puts. Allocates nothing.
   /// @return false when it was sent at once, and the socket did not take it
-  bool put(const std::uint8_t* datagram, std::uint32_t size, const sockaddr_in& address) noexcept;
+  [[nodiscard]] bool put(const std::uint8_t* datagram, std::uint32_t size,
+                         const sockaddr_in& address) noexcept;
 
   /// Sends what waits; any thread. @return the number of datagrams
   std::uint64_t flush() noexcept;

@@ -11,7 +11,7 @@
 namespace cordis::dds {
 namespace {
 
-constexpr auto kLookForEndedProcesses = std::chrono::seconds(1);
+constexpr auto kProcessCheckPeriod = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -127,14 +127,14 @@ std::unique_ptr<Presence> Participant::Impl::make_presence() {
 void Participant::Impl::watch() noexcept {
   std::unique_lock lock(watch_mutex_);
   while (!ending_) {
-    woken_.wait_for(lock, kLookForEndedProcesses, [this] { return ending_ || somebody_returned_; });
+    woken_.wait_for(lock, kProcessCheckPeriod, [this] { return ending_ || somebody_returned_; });
     if (ending_) return;
     const bool returned = std::exchange(somebody_returned_, false);
     lock.unlock();
     const bool done = !returned || rejoin();
     if (!returned) presence_->drop_who_is_gone();
     lock.lock();
-    if (!done) woken_.wait_for(lock, kLookForEndedProcesses, [this] { return ending_; });
+    if (!done) woken_.wait_for(lock, kProcessCheckPeriod, [this] { return ending_; });
     if (!done) somebody_returned_ = true;
   }
 }

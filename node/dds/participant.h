@@ -45,7 +45,7 @@ struct Peer {
 };
 
 /// Looks, one per second, after which a participant of another host that says nothing is dropped.
-inline constexpr int kForgottenAfterLooks = 60;
+inline constexpr int kForgottenAfterChecks = 60;
 
 /// How long the writers of a participant wait, all together, for what they wrote last to arrive. A
 /// process that ends is to end within the patience of its launcher, whoever has stopped reading.
@@ -79,7 +79,7 @@ struct FoundWriter {
 /// Who is there is said by node/status and by the age of samples. A participant drops those that
 /// leave, and within about a second those of this host whose process has ended without leaving: no
 /// silence makes it drop one of them. Of another host it drops those that have been silent for
-/// kForgottenAfterLooks seconds, for there it cannot look at processes.
+/// kForgottenAfterChecks seconds, for there it cannot look at processes.
 /// When one that was dropped is there again, as the same, the two would stay deaf to each other:
 /// the participant then joins again as another one. Readers and writers stay as they are; samples
 /// under way are lost.

@@ -63,7 +63,7 @@ class ParticipantPorts {
   std::uint16_t samples() const noexcept { return static_cast<std::uint16_t>(discovery_ + 1); }
 
  private:
-  bool try_to_take(int domain, const std::string& address, int index) noexcept;
+  [[nodiscard]] bool try_to_take(int domain, const std::string& address, int index) noexcept;
 
   int lock_ = -1;  // a socket
   std::uint16_t discovery_ = 0;

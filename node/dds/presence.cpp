@@ -32,8 +32,8 @@ constexpr std::uint32_t kLargestDatagramBytes = 1400;
 // In a secured session what authenticates a participant comes in one piece: its certificate and its
 // permissions have 6 kB.
 constexpr std::uint32_t kLargestSecuredBytes = 16384;
-constexpr int kUnprovenLooks = 3;          // [s] others of the session prove who they are sooner
-constexpr int kLateAnnouncementLooks = 5;  // [s] longer than any datagram is under way
+constexpr int kUnprovenChecks = 3;          // [s] others of the session prove who they are sooner
+constexpr int kLateAnnouncementChecks = 5;  // [s] longer than any datagram is under way
 constexpr const char* kDiscoveryGroup = "239.255.0.1";  // [DDSI 9.6.1.4]
 constexpr const char* kServerPrefix =
     "44.53.00.5f.45.50.52.4f.53.49.4d.41";  // `fastdds discovery -i 0`
@@ -325,8 +325,8 @@ void Presence::drop_who_is_gone() noexcept {
     for (const Peer& peer : all_peers()) {
       if (has_ended(peer, config_.network.address)) drop(peer);
     }
-    if (!config_.network.is_loopback()) look_at_those_elsewhere();
-    if (config_.security.is_on()) look_at_unproven();
+    if (!config_.network.is_loopback()) check_other_hosts();
+    if (config_.security.is_on()) check_unproven();
   } catch (...) {  // out of memory: the next time
   }
 }
@@ -339,7 +339,7 @@ void Presence::drop(const Peer& peer) noexcept {
 /// Counts how long each participant of another host has been silent, and drops it at last. One that
 /// was dropped before and speaks again has returned: a single announcement that came late, behind
 /// the farewell, is none.
-void Presence::look_at_those_elsewhere() {
+void Presence::check_other_hosts() {
   std::vector<Peer> silent;
   bool returned = false;
   {
@@ -348,10 +348,10 @@ void Presence::look_at_those_elsewhere() {
       if (known.peer.is_here()) continue;
       const auto last = known.record->last_received_message_tm();
       const bool speaks = last != std::exchange(known.last_message, last);
-      known.silent_looks = speaks ? 0 : known.silent_looks + 1;
+      known.silent_checks = speaks ? 0 : known.silent_checks + 1;
       if (speaks && std::exchange(known.has_returned, false)) returned = true;
-      const int limit = known.has_returned ? kLateAnnouncementLooks : kForgottenAfterLooks;
-      if (known.silent_looks >= limit) silent.push_back(known.peer);
+      const int limit = known.has_returned ? kLateAnnouncementChecks : kForgottenAfterChecks;
+      if (known.silent_checks >= limit) silent.push_back(known.peer);
     }
   }
   for (const Peer& peer : silent) drop(peer);
@@ -360,16 +360,16 @@ void Presence::look_at_those_elsewhere() {
 
 /// Marks peers that have not proven who they are, if no process of the session has: they have other
 /// keys, or none. Anybody can announce such a peer, so beside trusted ones it changes nothing.
-void Presence::look_at_unproven() {
+void Presence::check_unproven() {
   const std::lock_guard lock(mutex_);
   const bool has_company = std::ranges::any_of(peers_, [this](const auto& entry) {
     return entry.second.is_trusted && concerns(entry.second.peer);
   });
   for (auto& [prefix, known] : peers_) {
     if (known.is_trusted || !concerns(known.peer)) continue;
-    known.unproven_looks = has_company ? 0 : known.unproven_looks + 1;
+    known.unproven_checks = has_company ? 0 : known.unproven_checks + 1;
     if (has_company) mismatches_.erase(guid_of(prefix));
-    if (known.unproven_looks >= kUnprovenLooks)
+    if (known.unproven_checks >= kUnprovenChecks)
       mismatches_[guid_of(prefix)] = {unproven_text(known.peer.name, known.is_secured), ""};
   }
 }

@@ -75,7 +75,7 @@ class Presence final : public fast::DomainParticipantListener {
 
   /// Drops each participant whose process has ended without leaving: it would cost its share of
   /// every message, for DDS itself forgets no process. Of another host: that has been silent for
-  /// kForgottenAfterLooks calls. Called once a second: a process that has itself been stopped makes
+  /// kForgottenAfterChecks calls. Called once a second: a process that has itself been stopped makes
   /// no calls, and so holds no other for silent.
   void drop_who_is_gone() noexcept;
   void drop(const Peer& peer) noexcept;
@@ -99,8 +99,8 @@ class Presence final : public fast::DomainParticipantListener {
     Peer peer;
     const eprosima::fastrtps::rtps::ParticipantProxyData* record = nullptr;
     std::chrono::steady_clock::time_point last_message;  // as of the last look
-    int silent_looks = 0;
-    int unproven_looks = 0;     // in a secured session: without a proof of who it is
+    int silent_checks = 0;
+    int unproven_checks = 0;    // in a secured session: without a proof of who it is
     bool has_returned = false;  // dropped before, and not yet known to speak
     bool is_trusted = false;    // in a secured session: has proven who it is
     bool is_secured = false;    // has announced that it proves who it is
@@ -112,8 +112,8 @@ class Presence final : public fast::DomainParticipantListener {
   };
 
   std::vector<Peer> all_peers() const;
-  void look_at_those_elsewhere();
-  void look_at_unproven();
+  void check_other_hosts();
+  void check_unproven();
   bool concerns(const Peer& peer) const;  ///< it is of the session, or all are read
   void count_elsewhere();
   void evaluate_discovered(const ParticipantPrefix& participant);

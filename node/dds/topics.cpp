@@ -28,7 +28,7 @@ TopicQos newest_qos(const std::string& name) noexcept {
 }
 
 /// The newest of each key, also for who joins late. @param history_depth  so many
-TopicQos kept_qos(const std::string& name, int history_depth = 1) noexcept {
+TopicQos transient_local_qos(const std::string& name, int history_depth = 1) noexcept {
   return {.name = name.c_str(),
           .reliable = true,
           .transient_local = true,
@@ -57,13 +57,13 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
       return gesture_qos(msg::TOPIC_FORCES, lockstep, standbys);
     case Topic::kDevice:
       // Each of several nodes that play one device describes it, once.
-      return kept_qos(msg::TOPIC_DEVICE, 8);
+      return transient_local_qos(msg::TOPIC_DEVICE, 8);
     case Topic::kPointerTarget:
       return newest_qos(msg::TOPIC_POINTER_TARGET);
     case Topic::kPointerState:
       return newest_qos(msg::TOPIC_POINTER_STATE);
     case Topic::kDescription:
-      return kept_qos(msg::TOPIC_DESCRIPTION);
+      return transient_local_qos(msg::TOPIC_DESCRIPTION);
     case Topic::kFrame:
       return {.name = msg::TOPIC_FRAME.c_str(),
               .reliable = true,
@@ -89,7 +89,7 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
     case Topic::kReply:
       return stream_qos(msg::TOPIC_REPLY, 32);
     case Topic::kStatus:
-      return kept_qos(msg::TOPIC_STATUS);
+      return transient_local_qos(msg::TOPIC_STATUS);
   }
   return {};
 }

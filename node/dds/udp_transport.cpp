@@ -25,9 +25,9 @@ using eprosima::fastdds::rtps::LocatorsIterator;
 
 namespace {
 
-constexpr int kLookMsec = static_cast<int>(SampleSocket::kAttended / 1'000'000);
+constexpr int kPollMsec = static_cast<int>(SampleSocket::kAttended / 1'000'000);
 constexpr int kObserversWaitMsec = 2;
-constexpr int kIdleLooks = 50;   // without a datagram for observers: there is none
+constexpr int kIdlePolls = 50;   // without a datagram for observers: there is none
 constexpr int kMaxOfATurn = 64;  // datagrams: a flood does not keep those for observers
 
 /// A socket that sends from this address; -1 when there is none.
@@ -113,18 +113,18 @@ bool UdpTransport::CloseInputChannel(const Locator& locator) {
 /// Takes samples while no loop does, and sends what is for observers.
 void UdpTransport::attend() noexcept {
   pollfd end{end_of_work_, POLLIN, 0};
-  int idle_looks = kIdleLooks;
+  int idle_polls = kIdlePolls;
   while (end.revents == 0) {
     const bool is_attended = socket_->is_attended();
     std::array<pollfd, 2> files{end, pollfd{socket_->file(), POLLIN, 0}};
-    const int at_most_msec = idle_looks < kIdleLooks ? kObserversWaitMsec : kLookMsec;
+    const int at_most_msec = idle_polls < kIdlePolls ? kObserversWaitMsec : kPollMsec;
     poll(files.data(), is_attended ? 1 : 2, at_most_msec);
     end.revents = files[0].revents;
     for (int n = 0; n < kMaxOfATurn && end.revents == 0 && !socket_->is_attended(); ++n) {
       if (socket_->take() != SampleSocket::Taken::kDatagram) break;
       socket_->deliver();
     }
-    idle_looks = for_observers_->flush() > 0 ? 0 : std::min(idle_looks + 1, kIdleLooks);
+    idle_polls = for_observers_->flush() > 0 ? 0 : std::min(idle_polls + 1, kIdlePolls);
   }
 }
 

@@ -68,10 +68,11 @@ class UdpTransport final : public eprosima::fastdds::rtps::ChainingTransport {
                         std::uint32_t longest_bytes) override;
   bool CloseInputChannel(const Locator& locator) override;
 
-  bool send(eprosima::fastrtps::rtps::SenderResource* below, const std::uint8_t* datagram,
-            std::uint32_t size, eprosima::fastdds::rtps::LocatorsIterator* begin,
-            eprosima::fastdds::rtps::LocatorsIterator* end,
-            const std::chrono::steady_clock::time_point& deadline) override;
+  [[nodiscard]] bool send(eprosima::fastrtps::rtps::SenderResource* below,
+                          const std::uint8_t* datagram, std::uint32_t size,
+                          eprosima::fastdds::rtps::LocatorsIterator* begin,
+                          eprosima::fastdds::rtps::LocatorsIterator* end,
+                          const std::chrono::steady_clock::time_point& deadline) override;
   void receive(SampleSocket::Receiver* next, const std::uint8_t* datagram, std::uint32_t size,
                const Locator& local, const Locator& remote) override;
 

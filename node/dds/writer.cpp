@@ -13,6 +13,7 @@
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 
+#include "node/assert.h"
 #include "node/dds/message_types.h"
 #include "node/dds/participant_impl.h"
 
@@ -45,7 +46,9 @@ struct Writer<Message>::Impl final : Endpoint {
   Impl(Participant::Impl& joined, Topic topic, int strength_among_writers)
       : participant(joined),
         row(qos_of(topic, joined.config().lockstep, joined.config().standbys)),
-        strength(strength_among_writers) {}
+        strength(strength_among_writers) {
+    CORDIS_ASSERT(strength_among_writers >= 0);
+  }
 
   Participant::Impl& participant;
   const TopicQos row;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kFirstPeriodNsec = 2'000'000;
 constexpr std::int64_t kWatchPeriodNsec = 20'000'000;
-constexpr auto kFirstLookNsec = static_cast<std::int64_t>(TimerWatch::kFirstLookS * 1e9);
+constexpr auto kFirstCheckNsec = static_cast<std::int64_t>(TimerWatch::kFirstCheckS * 1e9);
 
 }  // namespace
 
@@ -38,8 +38,8 @@ void TimerWatch::watch() {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   std::int64_t due = begun_nsec_;
   for (;;) {
-    const bool first_look = due - begun_nsec_ < kFirstLookNsec;
-    const std::int64_t period = first_look ? kFirstPeriodNsec : kWatchPeriodNsec;
+    const bool is_first_check = due - begun_nsec_ < kFirstCheckNsec;
+    const std::int64_t period = is_first_check ? kFirstPeriodNsec : kWatchPeriodNsec;
     due += period;
     const timespec wake{due / 1'000'000'000, due % 1'000'000'000};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr);

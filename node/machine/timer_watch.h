@@ -29,7 +29,7 @@ class TimerWatch {
   TimerWatch(const TimerWatch&) = delete;
   TimerWatch& operator=(const TimerWatch&) = delete;
 
-  static constexpr double kFirstLookS = 2.0;
+  static constexpr double kFirstCheckS = 2.0;
 
   /// May be called from any thread.
   TimerFigures figures() const;

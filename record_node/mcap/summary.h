@@ -10,7 +10,7 @@
 
 namespace cordis::mcap {
 
-/// Everything that a reader wants to know before it reads messages.
+/// Everything that a reader needs before it reads messages.
 struct Summary {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;

@@ -13,7 +13,7 @@ namespace cordis::sim {
 /// The largest numbers that the samples of a device may hold, for each of its coordinates. Whoever
 /// takes part in a session may write a sample: a number beyond these is taken for the bound.
 struct DeviceReach {
-  static constexpr std::size_t kCoordinates = 16;
+  static constexpr std::size_t kCoordinates = msg::MAX_AXES;
   static constexpr double kFarthest = 2.0;      ///< no hand reaches farther [m]
   static constexpr double kStrongest = 1000.0;  ///< and none is stronger [N]
   /// Stops give, sensors err, and a coordinate of an end-effector map supports more together with the

@@ -99,8 +99,8 @@ void RefusedDevices::keep(std::uint64_t epoch, std::int64_t now_nsec) noexcept {
 
 void RefusedDevices::measure(std::int64_t now_nsec, bool is_measuring) {
   const std::lock_guard lock(mutex_);
-  const std::int64_t looked_nsec = std::exchange(looked_nsec_, now_nsec);
-  if (!is_measuring && looked_nsec != 0) unmeasured_nsec_ += now_nsec - looked_nsec;
+  const std::int64_t checked_nsec = std::exchange(checked_nsec_, now_nsec);
+  if (!is_measuring && checked_nsec != 0) unmeasured_nsec_ += now_nsec - checked_nsec;
   const std::int64_t measured_nsec = now_nsec - unmeasured_nsec_;
   bool any_changed = false;
   for (std::size_t i = 0; i < known_.size(); ++i) {

@@ -102,7 +102,7 @@ class RefusedDevices {
     bool is_elsewhere = false;  ///< on another host
     bool was_measured = false;  ///< at some time
   };
-  /// What the loop knows of a device.
+  /// The figures of a device, for the loop.
   struct Row {
     std::atomic<std::uint64_t> epoch{0};
     std::atomic<bool> is_refused{true};
@@ -123,7 +123,7 @@ class RefusedDevices {
 
   double delay_periods_;
   AnswerDelays* delays_;
-  std::int64_t looked_nsec_ = 0;      // measure() before; the thread of it, as the next
+  std::int64_t checked_nsec_ = 0;     // measure() before; the thread of it, as the next
   std::int64_t unmeasured_nsec_ = 0;  // time in which nothing was measured
   std::mutex mutex_;                  // of whoever decides
   std::vector<PortDemand> demands_;

@@ -11,7 +11,7 @@
 namespace cordis::sim {
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(1);  // for the end of single steps
+constexpr auto kPollPeriod = std::chrono::milliseconds(1);  // for the end of single steps
 
 std::string at_step(const Request& request) {
   return " at step " + std::to_string(request.step);
@@ -79,7 +79,7 @@ node::Answer CommandExecutor::answer_of(const PreparedRequest& prepared) {
       while (mailbox_.steps_left() > 0 && !mailbox_.is_closed()) {
         if (std::chrono::steady_clock::now() > limit)
           return {true, config::count_text(request.steps, "step") + " begun" + at_step(request)};
-        std::this_thread::sleep_for(kLook);
+        std::this_thread::sleep_for(kPollPeriod);
       }
       return {true, "paused at step " +
                         std::to_string(request.step + request.steps - mailbox_.steps_left())};

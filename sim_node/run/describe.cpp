@@ -58,7 +58,7 @@ msg::PortFrame frame_of(const scene::Scene& scene, const scene::Port& port,
     return place;
   };
   msg::PortFrame frame;
-  // Of a body it is where the mass is that stands for it.
+  // A body is where the mass is that stands for it.
   const std::array<float, 3> rest =
       shown(port.body.empty() ? port.rest : scene.network.mats[port.mat].position);
   frame.rest_m().assign(rest.begin(), rest.end());

@@ -4,14 +4,14 @@
 namespace cordis::sim {
 namespace {
 
-constexpr auto kLookForTheEnd = std::chrono::milliseconds(20);
+constexpr auto kEndPollPeriod = std::chrono::milliseconds(20);
 
 }  // namespace
 
 bool RequestMailbox::submit(Request& request) noexcept {
   slot_.store(&request, std::memory_order_release);
   submitted_.release();
-  while (!done_.try_acquire_for(kLookForTheEnd)) {
+  while (!done_.try_acquire_for(kEndPollPeriod)) {
     if (!is_closed()) continue;
     // The loop closes the mailbox after its last request, so whatever was executed shows by now.
     const bool was_executed = done_.try_acquire();

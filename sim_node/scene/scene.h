@@ -120,7 +120,7 @@ struct SettledStart {
   std::uint32_t mat = 0;  ///< MAT that has gone it
 };
 
-/// What a scene wants taken out of it: its `reduce`. See sim_node/plan/reduction.
+/// The reductions of a scene: its `reduce`. See sim_node/plan/reduction.
 struct ReductionOptions {
   bool parallel = false;   ///< linear links between the same two MATs
   bool series = false;     ///< MATs without mass between links of one kind, in 1 dimension

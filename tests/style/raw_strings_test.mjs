@@ -8,7 +8,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 
 const root = process.argv[2];
-const MOST_LINES = 2;
+const MAX_LINES = 2;
 const TOKEN = /\/\/[^\n]*|\/\*.*?\*\/|R"([^()\\ \n]{0,16})\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])+'|[\w']+|\s+|./gsu;
 const KEY = /^\s*(- )?["\w.\-[\]^*]+:( |$)|^\s*- [{["\w]/m;
 
@@ -34,7 +34,7 @@ function isRefused(run) {
   if (!run.some(({ token, isRaw }) => !isRaw && token.includes('\\n'))) return false;
   if (text.includes('\r') || /\\[xtu0]/.test(run.map(({ token }) => token).join('')) || !KEY.test(text)) return false;
   const lines = text.replace(/^\n|\n+$/g, '').split('\n').length;
-  return lines > (run.length > 1 ? 1 : MOST_LINES);
+  return lines > (run.length > 1 ? 1 : MAX_LINES);
 }
 
 const sources = fs.readdirSync(path.join(root, 'tests'), { recursive: true }).filter((name) => /\.(cpp|h)$/.test(name));

@@ -10,7 +10,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { promisify } from 'node:util';
 
-const MOST_TOGETHER = 24;
+const MAX_TOGETHER = 24;
 const [source, build] = process.argv.slice(2, 4).map((folder) => fs.realpathSync(folder));
 const beginning = process.argv[4] ?? '';
 const clean = path.join(build, 'clang-tidy');
@@ -51,7 +51,7 @@ function groups() {
   }
   return [...groups.values()].flatMap(({ options, members }) => {
     members.sort((a, b) => (a.file < b.file ? -1 : 1));
-    const parts = Math.ceil(members.length / MOST_TOGETHER);
+    const parts = Math.ceil(members.length / MAX_TOGETHER);
     return Array.from({ length: parts }, (_, i) =>
       ({ options, members: members.filter((_, m) => m % parts === i) }));
   });

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim_node/engine/core/require.h"
+#include "sim_node/engine/description/bend_limits.h"
 #include "sim_node/engine/description/fingerprint.h"
 
 namespace cordis::engine {
@@ -102,7 +103,6 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
 }
 
 void check_bend(const NetworkDescription& description, const Bend& bend, const std::string& name) {
-  constexpr double kMaxRestAngle = 3.2;  // [rad]
   for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) {
     require(mat < description.mats.size(), name + ": each MAT", "one of the network");
   }

@@ -1,6 +1,7 @@
 // sim_node/engine/expressions/program_kernel_body.h -- the value of a program for 8 rows at a time.
 #pragma once
 
+#include "node/assert.h"
 #include "sim_node/engine/expressions/elementary_functions.h"
 #include "sim_node/engine/expressions/program_term.h"
 #include "sim_node/engine/simd/lane_batch.h"
@@ -66,6 +67,7 @@ class ProgramLoop {
           break;
       }
     }
+    CORDIS_ASSERT(depth == 1);
     return value_[0];
   }
 

@@ -13,6 +13,7 @@ namespace cordis::engine {
 
 template <class Lanes>
 struct LaneBatch {
+  static_assert(kBatchRows % Lanes::kWidth == 0, "a batch is whole registers");
   using Row = typename Lanes::Row;
   static constexpr std::size_t kRows = Lanes::kWidth == 1 ? 1 : kBatchRows;
   static constexpr std::uint32_t kAll = (1U << kBatchRows) - 1U;

@@ -1,12 +1,14 @@
 // sim_node/scene/liaisons/bend_law.cpp
 #include "sim_node/scene/liaisons/bend_law.h"
 
+#include "sim_node/engine/description/bend_limits.h"
+
 namespace cordis::scene {
 
 BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterValues& parameters,
                       config::Problems& problems) {
   using config::Range;
-  constexpr double kMaxRestAngle = 3.2;  // [rad]
+  using engine::kMaxRestAngle;
   constexpr const char* kRestAngle = "rest_rad";
   constexpr const char* kLength = "length_m";
   BendLaw law;
