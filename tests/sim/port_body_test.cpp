@@ -115,12 +115,12 @@ ports: {hand: {device: d, axes: [0], role: liaison, of: s}}
                                                           mass_of(scene, port), at_once);
     if (stiffness == 0.0) continue;
     engine::World world(std::make_shared<const engine::Network>(scene.network));
-    push(world, port, Vec3(5, 0, 0));
+    apply_force(world, port, Vec3(5, 0, 0));
     double farthest = 0.0;
     for (int n = 0; n < 20000; ++n) {
       world.step();
       const Vec3 way = position_of(world, port) - port.rest;
-      push(world, port, -0.999 * stiffness * way);
+      apply_force(world, port, -0.999 * stiffness * way);
       farthest = std::max(farthest, std::abs(way.x()));
     }
     EXPECT_LT(farthest, 1.0) << stiffness;
@@ -182,14 +182,14 @@ ports: {hand: {device: d, axes: [0], role: liaison, of: [core, skin]}}
     const double stiffness =
         plan::largest_hand_stiffness(load, mass_of(scene, port), plan::PortLoop{1e-3, 1.0, 1});
     engine::World world(std::make_shared<const engine::Network>(scene.network));
-    push(world, port, Vec3(5, 0, 0));
+    apply_force(world, port, Vec3(5, 0, 0));
     world.step();
     const double start = world.energy().kinetic + world.energy().elastic;
     double before = 0.0;  // where the centre was a period ago
     double last_way = 0.0;
     for (int n = 0; n < 40000; ++n) {
       const double way = (position_of(world, port) - port.rest).x();
-      push(world, port, Vec3(-0.95 * stiffness * before, 0, 0));
+      apply_force(world, port, Vec3(-0.95 * stiffness * before, 0, 0));
       before = way;
       ASSERT_TRUE(std::isfinite(way)) << stiffness;
       last_way = std::max(n < 39000 ? 0.0 : last_way, std::abs(way));
