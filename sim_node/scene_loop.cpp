@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kLongestReaderWait = 5s;  // for a reader of signals, or a recorder
-constexpr auto kLookForRecorder = 2ms;
+constexpr auto kRecorderPoll = 2ms;
 constexpr auto kRest = 5ms;  // a turn of a loop without real time while the scene is paused
 constexpr std::uint64_t kRestsPerFrame = 8;
 
@@ -59,7 +59,7 @@ void SceneLoop::wait_for_recorder(const std::string& node) {
   const std::string reader = node + "/topics";  // the participant of a recorder that reads
   const auto end = std::chrono::steady_clock::now() + kLongestReaderWait;
   while (!is_recorded_by(reader)) {
-    if (node::wait_for_stop(kLookForRecorder)) return;
+    if (node::wait_for_stop(kRecorderPoll)) return;
     if (std::chrono::steady_clock::now() < end) continue;
     spdlog::warn("{} does not record after {} s: it gets no first answers and signals", node,
                  kLongestReaderWait.count());
