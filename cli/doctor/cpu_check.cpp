@@ -9,8 +9,6 @@
 #include "node/config/count_text.h"
 
 namespace cordis::cli {
-namespace {}  // namespace
-
 Finding check_governor(const machine::SystemFiles& files) {
   const std::string folder = "sys/devices/system/cpu";
   std::map<std::string, std::size_t> cores;  // by governor
