@@ -171,11 +171,12 @@ int run_and_report(int argc, char** argv, const std::string& kind,
     const bool goes_on = arguments.check_only && start.launch.find(arguments.name) != nullptr;
     if (!goes_on) problems.throw_if_any();
     start.node = choose(start.launch, kind, arguments.name);
-    const bool is_sound = !problems.has_errors();
-    if (is_sound) start.network = network_of(start.launch, problems);
-    if (is_sound) problems.throw_if_any();
-    if (is_sound && !start.launch.security.empty())
-      start.identity = identity_in(keyring_of(start.launch), roles_of(kind), start.node->name);
+    if (!problems.has_errors()) {
+      start.network = network_of(start.launch, problems);
+      problems.throw_if_any();
+      if (!start.launch.security.empty())
+        start.identity = identity_in(keyring_of(start.launch), roles_of(kind), start.node->name);
+    }
     start.check_only = arguments.check_only;
     start.epoch = static_cast<std::uint64_t>(monotonic_nsec());
     install_log(start.node->name);

@@ -54,20 +54,19 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
   const double per_tick = scene.gesture_rate_hz;
   const double stable_rate = (std::floor(1.0 / (bound.step * per_tick)) + 1.0) * per_tick;
   const std::string limit = liaison.name + " at the mass " + mass.name + " sets the limit";
-  const auto called = [&scene, &stability] {
-    return scene::call_liaison(scene, stability.uncertainty->liaison).name + ": " +
-           stability.uncertainty->why;
-  };
+  scene::Called uncertain;
+  if (stability.uncertainty) uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
+  const std::string why =
+      stability.uncertainty ? uncertain.name + ": " + stability.uncertainty->why : std::string();
   const std::string hint = stability.uncertainty
-                               ? "no rate_hz is certain: " + called()
+                               ? "no rate_hz is certain: " + why
                                : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
                                      " is stable in every pose and state";
   if (!stability.diverges() && stability.uncertainty) {
-    const scene::Called uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
-    problems.warning(uncertain.place,
-                     "at " + std::to_string(rate) +
-                         " Hz it is not certain that the scene is stable: " + called(),
-                     "energy and K' + 2 Z' are watched during the run");
+    problems.warning(
+        uncertain.place,
+        "at " + std::to_string(rate) + " Hz it is not certain that the scene is stable: " + why,
+        "energy and K' + 2 Z' are watched during the run");
   } else if (!stability.diverges()) {
     problems.warning(place,
                      "at " + std::to_string(rate) +

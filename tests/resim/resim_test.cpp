@@ -34,7 +34,6 @@ namespace {
 
 const std::string kGolden = CORDIS_GOLDEN_DIR "/";
 
-/// What becomes of the messages of a topic in a copy; false leaves one out.
 /// Gives the writer the channels of a take, without their schemas. @return their numbers, by those of
 /// the take
 std::map<std::uint16_t, std::uint16_t> copy_channels(const mcap::Reader& take,
@@ -48,6 +47,7 @@ std::map<std::uint16_t, std::uint16_t> copy_channels(const mcap::Reader& take,
   return channels;
 }
 
+/// What becomes of the messages of a topic in a copy; false leaves one out.
 template <class Message>
 using Change = std::function<bool(Message&)>;
 
@@ -471,49 +471,44 @@ TEST(Resim, ComparesAnotherModelUnderTheSameHand) {
   EXPECT_EQ(resimulate(options).findings.largest->largest_m, 0.0);
 }
 
-TEST(Resim, RefusesASceneOfAnotherGestureRate) {
-  const mcap::TakeFolder folder;
-  const std::string scene = (folder / "slow.yaml").string();
+/// Writes the scene of a ball alone, and computes a golden take with it. @return why that is refused
+template <class Error>
+std::string refusal_of_ball(const std::filesystem::path& scene, const std::string& gesture_rate_hz,
+                            const std::string& take) {
   std::ofstream(scene) << R"(cordis: 1
-name: slow
+name: ball
 space: 1
-step: {rate_hz: 1000, gesture_rate_hz: 500}
+step: {rate_hz: 1000, gesture_rate_hz: )"
+                       << gesture_rate_hz << R"(}
 matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}
 )";
   ResimOptions options;
-  options.take = kGolden + "realtime_key.mcap";
-  options.scene_file = scene;
+  options.take = kGolden + take;
+  options.scene_file = scene.string();
   try {
     resimulate(options);
-    FAIL() << "a take of 1000 Hz with a scene of 500 Hz";
-  } catch (const std::exception& error) {
-    EXPECT_EQ(std::string(error.what()), scene +
-                                             " has a gesture rate of 500 Hz, and the take one of "
-                                             "1000 Hz: give the scene 'gesture_rate_hz: 1000'");
+  } catch (const Error& error) {
+    return error.what();
   }
+  return "not refused";
+}
+
+TEST(Resim, RefusesASceneOfAnotherGestureRate) {
+  const mcap::TakeFolder folder;
+  const std::filesystem::path scene = folder / "slow.yaml";
+  EXPECT_EQ(refusal_of_ball<std::exception>(scene, "500", "realtime_key.mcap"),
+            scene.string() +
+                " has a gesture rate of 500 Hz, and the take one of "
+                "1000 Hz: give the scene 'gesture_rate_hz: 1000'");
 }
 
 TEST(Resim, SaysWhichCommandOfTheTakeAnotherSceneCannotRepeat) {
   const mcap::TakeFolder folder;
-  const std::string scene = (folder / "bare.yaml").string();
-  std::ofstream(scene) << R"(cordis: 1
-name: bare
-space: 1
-step: {rate_hz: 1000, gesture_rate_hz: 1000}
-matter: {ball: {kind: mass, at_m: [0], mass_kg: 0.1}}
-)";
-  ResimOptions options;
-  options.take = kGolden + "commands.mcap";
-  options.scene_file = scene;
-  try {
-    resimulate(options);
-    FAIL() << "the scene has no wall to set";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "'set {'wall.stiffness_n_per_m': 210}' of the take cannot "
-              "be repeated in " +
-                  scene + ": no liaison and no links are named 'wall'");
-  }
+  const std::filesystem::path scene = folder / "bare.yaml";
+  EXPECT_EQ(refusal_of_ball<std::invalid_argument>(scene, "1000", "commands.mcap"),
+            "'set {'wall.stiffness_n_per_m': 210}' of the take cannot "
+            "be repeated in " +
+                scene.string() + ": no liaison and no links are named 'wall'");
 }
 
 TEST(Resim, SaysHowManyScenesATakeHas) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "sim_node/plan/stability/limit_weights.h"
@@ -78,16 +79,17 @@ void take_smaller(StepBound& bound, double step, std::uint32_t mat) {
 StepBound row_bound(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows) {
   constexpr double kAlike = 1.01;
   StepBound bound;
-  const auto step_of = [&](std::uint32_t i) {
-    const double per_mass = graph.inverse_mass[i] / x[i];
-    return limit_step(rows.stiffness[i] * per_mass, rows.viscosity[i] * per_mass);
-  };
+  std::vector<double> steps(x.size(), std::numeric_limits<double>::infinity());
   for (std::uint32_t i = 0; i < x.size(); ++i) {
-    if (x[i] > 0.0) take_smaller(bound, step_of(i), i);
+    if (x[i] <= 0.0) continue;
+    const double per_mass = graph.inverse_mass[i] / x[i];
+    steps[i] = limit_step(rows.stiffness[i] * per_mass, rows.viscosity[i] * per_mass);
+    take_smaller(bound, steps[i], i);
   }
   double most = 0.0;
   for (std::uint32_t i = 0; i < x.size(); ++i) {
-    if (!(x[i] > 0.0 && graph.inverse_mass[i] > 0.0) || step_of(i) > kAlike * bound.step) continue;
+    const bool is_among_them = x[i] > 0.0 && steps[i] <= kAlike * bound.step;
+    if (!is_among_them || graph.inverse_mass[i] <= 0.0) continue;
     const double energy = x[i] * x[i] / graph.inverse_mass[i];
     if (energy <= most) continue;
     most = energy;
