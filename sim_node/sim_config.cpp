@@ -1,7 +1,6 @@
 // sim_node/sim_config.cpp
 #include "sim_node/sim_config.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -16,21 +15,6 @@ namespace cordis::sim {
 namespace {
 
 constexpr std::size_t kMaxSceneBytes = std::size_t{16} << 20;
-
-/// Where the launch file lies, links and `..` resolved; empty when it is no longer there.
-std::filesystem::path folder_of(const config::Launch& launch) {
-  std::error_code failure;
-  return std::filesystem::canonical(std::filesystem::absolute(launch.file).parent_path(), failure);
-}
-
-/// The file of a path as it lies below a folder; empty when it does not. The folder is resolved.
-std::filesystem::path below(const std::filesystem::path& folder, const std::string& path) {
-  std::error_code failure;
-  const std::filesystem::path file = std::filesystem::weakly_canonical(folder / path, failure);
-  if (failure || folder.empty()) return {};
-  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end());
-  return end == folder.end() && rest != file.end() ? file : std::filesystem::path();
-}
 
 /// True if a file says that it is written for Cordis, or cannot be read, which the reader reports.
 /// What is wrong in another file would report what stands in it.
@@ -99,8 +83,8 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
 
 scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
                              config::Problems& problems) {
-  const std::filesystem::path folder = folder_of(launch);
-  const std::filesystem::path file = below(folder, path);
+  const std::filesystem::path folder = launch.real_folder();
+  const std::filesystem::path file = launch.find_below(path);
   if (file.empty()) {
     problems.error({},
                    "'" + path + "' is not below '" + folder.string() +

@@ -47,6 +47,13 @@ void check_scene_files(const config::Launch& launch, const VizConfig& viz,
                        config::Problems& problems) {
   for (std::size_t i = 0; i < viz.rights.scenes.size(); ++i) {
     const std::string path = launch.resolve(viz.rights.scenes[i]).string();
+    if (!launch.network && launch.find_below(viz.rights.scenes[i]).empty()) {
+      problems.error(viz.scene_places[i],
+                     "'" + viz.rights.scenes[i] + "' is not below '" +
+                         launch.real_folder().string() +
+                         "', the folder of the launch file, from where alone scenes are loaded");
+      continue;
+    }
     const std::string reason = config::read_regular_file(path, config::kMaxFileBytes).reason;
     if (reason.empty()) continue;
     const std::string text = "cannot read '" + path + "': " + reason;

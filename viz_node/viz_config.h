@@ -24,8 +24,9 @@ struct VizConfig {
 /// Reads the section, in which every key is optional. What is wrong goes to `problems`.
 VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& problems);
 
-/// A problem for each of `scenes` whose file cannot be read. It is a warning where the launch file
-/// has a `network`: sim_node loads the scene, maybe on another host.
+/// A problem for each of `scenes` that does not lie below the folder of the launch file, or whose file
+/// cannot be read. Where the launch file has a `network`, sim_node may load the scene on another host:
+/// a file that cannot be read is a warning there, and its folder is not looked at.
 void check_scene_files(const config::Launch& launch, const VizConfig& viz,
                        config::Problems& problems);
 

@@ -256,6 +256,20 @@ std::filesystem::path Launch::resolve(const std::string& path) const {
   return directory / path;
 }
 
+std::filesystem::path Launch::real_folder() const {
+  std::error_code failure;
+  return std::filesystem::canonical(directory.empty() ? "." : directory, failure);
+}
+
+std::filesystem::path Launch::find_below(const std::string& path) const {
+  const std::filesystem::path folder = real_folder();
+  std::error_code failure;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(folder / path, failure);
+  if (failure || folder.empty()) return {};
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), found.begin(), found.end());
+  return end == folder.end() && rest != found.end() ? found : std::filesystem::path();
+}
+
 void check_domain(const Launch& launch, Problems& problems) {
   if (launch.network && !launch.domain)
     problems.error(launch.network->place,

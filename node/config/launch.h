@@ -57,6 +57,10 @@ struct Launch {
   const LaunchNode* find(const std::string& name) const noexcept;
   /// A path of the file as this process can open it.
   std::filesystem::path resolve(const std::string& path) const;
+  /// Where the file lies, links and `..` resolved; empty when it is no longer there.
+  std::filesystem::path real_folder() const;
+  /// A path as it lies below real_folder(), links and `..` resolved; empty when it does not.
+  std::filesystem::path find_below(const std::string& path) const;
 };
 
 /// Reads a launch file. Every fault is a problem: unknown keys and programs, a domain beyond

@@ -1,6 +1,8 @@
 // tests/viz/viz_config_test.cpp
 #include "viz_node/viz_config.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 
 #include "node/config/yaml_reader.h"
@@ -67,6 +69,21 @@ TEST(VizConfig, WarnsOfAMissingSceneWhereSimNodeMayRunOnAnotherHost) {
         << problem.message;
     EXPECT_EQ(problems.has_errors(), !has_network);
   }
+}
+
+TEST(VizConfig, RefusesScenesOutsideTheFolderOfTheLaunchFile) {
+  config::Problems problems;
+  config::Launch launch;
+  launch.directory = std::filesystem::canonical(CORDIS_SOURCE_DIR "/launch_configs/devices");
+  const VizConfig viz = read("scenes: [../scenes/membrane.yaml]", problems);
+
+  check_scene_files(launch, viz, problems);
+
+  ASSERT_EQ(problems.all().size(), 1u);
+  EXPECT_EQ(problems.all().front().place.column, 10);
+  EXPECT_NE(problems.all().front().message.find("is not below '" + launch.directory.string() + "'"),
+            std::string::npos)
+      << problems.all().front().message;
 }
 
 TEST(VizConfig, FindsAllThatIsWrongAtOnceAndWhere) {
