@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "node/config/file_kind.h"
-#include "node/config/value.h"
-#include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/port_body.h"
 #include "sim_node/checks/stability_check.h"
@@ -44,12 +42,9 @@ PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
 /// The launch file of these options, as far as it can be read; empty when their file is a scene.
 /// What is wrong with it goes to `problems`, but for a file that is no YAML, which throws.
 std::optional<config::Launch> launch_of(const CheckOptions& options, config::Problems& problems) {
-  config::Problems of_the_text;  // which are found again when the file is read as what it is
-  const config::Value root = options.text
-                                 ? config::load_text(*options.text, options.file, of_the_text)
-                                 : config::load_file(options.file, of_the_text);
-  if (!root.exists()) of_the_text.throw_if_any();
-  if (!config::is_launch_file(root)) {
+  const bool is_launch = options.text ? config::is_launch_text(*options.text, options.file)
+                                      : config::is_launch_file(options.file);
+  if (!is_launch) {
     if (!options.overrides.empty())
       throw std::runtime_error("'" + options.overrides[0] + "' changes a launch file, and " +
                                options.file + " is a scene");

@@ -5,8 +5,6 @@
 
 #include "cli/offline/offline_session.h"
 #include "node/config/file_kind.h"
-#include "node/config/value.h"
-#include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
 
 namespace cordis::cli {
@@ -63,17 +61,15 @@ void record(OfflineSession& session, LabScene& lab) {
 }  // namespace
 
 LabScene load_lab_scene(const std::string& file, double duration_s) {
-  config::Problems problems;
-  const config::Value root = config::load_file(file, problems);
-  if (!root.exists()) problems.throw_if_any();
   LabScene lab;
-  if (config::is_launch_file(root)) {
+  if (config::is_launch_file(file)) {
     OfflineSession session(file);
     refuse_saved_state(session.scene());
     lab.duration_s = duration_of(session.scene(), duration_s);
     record(session, lab);
     return lab;
   }
+  config::Problems problems;
   lab.scene = sim::plan_scene(file, {}, problems).scene;
   problems.throw_if_any();
   refuse_saved_state(lab.scene);

@@ -10,7 +10,6 @@
 #include "device_node/gesture_wire.h"
 #include "node/config/count_text.h"
 #include "node/config/file_kind.h"
-#include "node/config/yaml_reader.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/devices/device_reach.h"
@@ -127,10 +126,7 @@ class OfflineSession::SimulatedDevice {
 };
 
 OfflineSession::OfflineSession(const std::string& file, const std::vector<std::string>& overrides) {
-  config::Problems problems;  // which are found again when the file is read as what it is
-  const config::Value root = config::load_file(file, problems);
-  if (!root.exists()) problems.throw_if_any();
-  if (config::is_launch_file(root)) {
+  if (config::is_launch_file(file)) {
     load_launch(file, overrides);
   } else if (overrides.empty()) {
     load_scene(file);

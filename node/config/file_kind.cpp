@@ -5,6 +5,8 @@
 #include <array>
 #include <string>
 
+#include "node/config/yaml_reader.h"
+
 namespace cordis::config {
 namespace {
 
@@ -38,10 +40,21 @@ const KindWords& words_of(FileKind kind) {
   return *std::ranges::find(kKinds, kind, &KindWords::kind);
 }
 
+bool has_nodes(const Value& root, const Problems& problems) {
+  if (!root.exists()) problems.throw_if_any();
+  return root.find(words_of(FileKind::kLaunch).mark).exists();
+}
+
 }  // namespace
 
-bool is_launch_file(const Value& root) {
-  return root.find(words_of(FileKind::kLaunch).mark).exists();
+bool is_launch_file(const std::string& path) {
+  Problems problems;
+  return has_nodes(load_file(path, problems), problems);
+}
+
+bool is_launch_text(const std::string& text, const std::string& path) {
+  Problems problems;
+  return has_nodes(load_text(text, path, problems), problems);
 }
 
 bool is_file_of(FileKind wanted, const Value& root, Problems& problems) {
