@@ -1,5 +1,8 @@
 // tests/gallery/anvil_test.cpp
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -54,6 +57,28 @@ TEST(Anvil, IsStruckByTheLawOfHertz) {
   session.play_until(kLeaning);
   const double pressed = session.position("anvil").x() - session.position("hammer").x();
   EXPECT_NEAR(-session.signal("blow"), 1.0e8 * std::pow(pressed, 1.5), 1e-3);
+}
+
+/// How far the hammer goes up and down while the hand leans on the anvil [m].
+double shaking_of_the_hammer(GallerySession& session) {
+  session.play_until(3.0);
+  double lowest = session.signal("hammer");
+  double highest = lowest;
+  session.play_until(4.0, [&] {
+    lowest = std::min(lowest, session.signal("hammer"));
+    highest = std::max(highest, session.signal("hammer"));
+  });
+  return highest - lowest;
+}
+
+TEST(AnvilAfar, ShakesUnderAFirmHandWhoseAnswersAreFourPeriodsLate) {
+  GallerySession session("anvil_afar.yaml");
+  EXPECT_GT(shaking_of_the_hammer(session), 3e-3);
+  EXPECT_NE(session.warnings(), std::vector<std::string>{});
+
+  GallerySession nearby("anvil_afar.yaml", {"hand.delay_periods=2"});
+  EXPECT_LT(shaking_of_the_hammer(nearby), 1e-6);
+  EXPECT_NEAR(nearby.signal("blow"), -6.2, 0.01);
 }
 
 }  // namespace
