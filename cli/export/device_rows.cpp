@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <type_traits>
 #include <variant>
@@ -40,6 +41,16 @@ std::vector<Input> in_order(const msg::SceneInputs& batch) {
   return inputs;
 }
 
+/// How many numbers between two others are not there.
+/// @param numbers  ascending, each once
+std::uint64_t missing_between(const std::vector<std::uint64_t>& numbers, std::uint64_t first,
+                              std::uint64_t last) {
+  if (last <= first) return 0;
+  const auto present =
+      std::ranges::lower_bound(numbers, last) - std::ranges::upper_bound(numbers, first);
+  return last - first - 1 - static_cast<std::uint64_t>(present);
+}
+
 }  // namespace
 
 DeviceRows::DeviceRows(const mcap::Reader& take, const TakeScene& scene, ReadLoss& loss)
@@ -55,6 +66,13 @@ DeviceRows::DeviceRows(const mcap::Reader& take, const TakeScene& scene, ReadLos
   read_answers<msg::GestureForces>(take, msg::TOPIC_FORCES, /*to_positions=*/true, scene, loss);
   read_answers<msg::GesturePositions>(take, msg::TOPIC_POSITIONS, /*to_positions=*/false, scene,
                                       loss);
+  const bool ends_without_answer = std::ranges::any_of(devices_, [this](const auto& entry) {
+    const Device& device = entry.second;
+    return !device.placed.empty() && device.placed.back().row + 1 < steps_.size();
+  });
+  if (!ends_without_answer) return;
+  read_received<msg::GesturePositions>(take, msg::TOPIC_POSITIONS, scene, loss);
+  read_received<msg::GestureForces>(take, msg::TOPIC_FORCES, scene, loss);
 }
 
 std::vector<Column> DeviceRows::columns() const {
@@ -167,12 +185,17 @@ void DeviceRows::read_answers(const mcap::Reader& take, const std::string& topic
   if (!is_wanted || steps_.empty()) return;
   MessageSource<Answer> source(take, topic, loss);
   Answer answer;
+  std::vector<std::uint64_t> sequences;
   while (source.next(answer)) {
+    if (answer.epoch() != scene.description.epoch()) continue;
+    sequences.push_back(source.sequence());
     const auto device = devices_.find(answer.device_id());
-    if (answer.epoch() != scene.description.epoch() || device == devices_.end()) continue;
+    if (device == devices_.end()) continue;
+    device->second.numbers.push_back(answer.sample());
     const std::size_t row =
         row_of(device->second, answer.answered_epoch(), answer.answered_sample(), answer.sample());
     if (row == steps_.size()) continue;
+    device->second.placed.push_back({row, answer.sample(), source.sequence()});
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const Axis& axis = axes_[i];
       if (axis.device_id != answer.device_id() || axis.gives_positions != to_positions) continue;
@@ -185,6 +208,7 @@ void DeviceRows::read_answers(const mcap::Reader& take, const std::string& topic
       }
     }
   }
+  count_lost(std::move(sequences));
 }
 
 const double* DeviceRows::values_at(std::uint64_t step) const noexcept {
@@ -193,16 +217,88 @@ const double* DeviceRows::values_at(std::uint64_t step) const noexcept {
   return values_.data() + 2 * axes_.size() * static_cast<std::size_t>(found - steps_.begin());
 }
 
-std::size_t DeviceRows::missing_at(std::uint64_t step) const {
+DeviceRows::Missing DeviceRows::missing_at(std::uint64_t step) const {
+  Missing missing;
   const double* values = values_at(step);
-  if (values == nullptr) return 0;
+  if (values == nullptr) return missing;
   const auto row = static_cast<std::size_t>(values - values_.data()) / (2 * axes_.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (row < devices_.at(axes_[i].device_id).first_row) continue;
-    count += (std::isnan(values[2 * i]) ? 1U : 0U) + (std::isnan(values[2 * i + 1]) ? 1U : 0U);
+  for (const auto& [id, device] : devices_) {
+    if (row < device.first_row) continue;
+    bool has_all = true;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const bool has_value = !std::isnan(values[2 * i]) && !std::isnan(values[2 * i + 1]);
+      if (axes_[i].device_id == id && !has_value) has_all = false;
+    }
+    if (has_all) continue;
+    switch (reason_of(device, row)) {
+      case Reason::kLost:
+        ++missing.lost;
+        break;
+      case Reason::kBefore:
+        ++missing.before;
+        break;
+      case Reason::kSilent:
+        ++missing.silent;
+        break;
+    }
   }
-  return count;
+  return missing;
+}
+
+void DeviceRows::count_lost(std::vector<std::uint64_t> sequences) {
+  std::ranges::sort(sequences);
+  const bool are_numbered = std::ranges::adjacent_find(sequences) == sequences.end();
+  for (auto& [id, device] : devices_) {
+    std::ranges::sort(device.numbers);
+    device.numbers.erase(std::unique(device.numbers.begin(), device.numbers.end()),
+                         device.numbers.end());
+    std::ranges::sort(device.placed, {}, &Placed::row);
+    std::uint64_t number = 0;  // of the answer before
+    std::uint64_t sequence = 0;
+    for (Placed& answer : device.placed) {
+      answer.lost_before = missing_between(device.numbers, number, answer.number);
+      if (are_numbered) {
+        const std::uint64_t messages = missing_between(sequences, sequence, answer.sequence);
+        answer.lost_before = std::min(answer.lost_before, messages);
+      }
+      number = answer.number;
+      sequence = answer.sequence;
+    }
+  }
+}
+
+template <class Sample>
+void DeviceRows::read_received(const mcap::Reader& take, const std::string& topic,
+                               const TakeScene& scene, ReadLoss& loss) {
+  MessageSource<Sample> source(take, topic, loss);
+  Sample sample;
+  while (source.next(sample)) {
+    if (sample.answered_epoch() != scene.description.epoch()) continue;
+    const auto device = devices_.find(sample.device_id());
+    if (device == devices_.end()) continue;
+    device->second.says_received = true;
+    device->second.newest_received =
+        std::max(device->second.newest_received, sample.answered_sample());
+  }
+}
+
+DeviceRows::Reason DeviceRows::reason_of(const Device& device, std::size_t row) {
+  if (device.placed.empty()) return Reason::kLost;
+  const auto next = std::ranges::upper_bound(device.placed, row, {}, &Placed::row);
+  if (next == device.placed.end()) {
+    const std::uint64_t newest = device.numbers.back();
+    const std::uint64_t lost =
+        device.newest_received > newest ? device.newest_received - newest : 0;
+    const bool is_lost = !device.says_received || row - device.placed.back().row <= lost;
+    return is_lost ? Reason::kLost : Reason::kSilent;
+  }
+  if (next == device.placed.begin()) {
+    if (row - device.first_row >= next->lost_before) return Reason::kSilent;
+    const bool is_first = device.numbers.front() == next->number;
+    return is_first ? Reason::kBefore : Reason::kLost;
+  }
+  const std::size_t place = row - std::prev(next)->row;  // from 1
+  return place <= next->lost_before ? Reason::kLost : Reason::kSilent;
 }
 
 }  // namespace cordis::cli

@@ -21,7 +21,7 @@ namespace cordis::cli {
 ///
 /// What a device gave comes from `scene/inputs`, which says the turn in which a sample took effect.
 /// What it was answered comes from `gesture/*`, by the sample that the answer names. Values wait in
-/// memory: 16 bytes per axis and gesture period.
+/// memory: 16 bytes per axis and gesture period, and 32 bytes per answer.
 class DeviceRows {
  public:
   DeviceRows(const mcap::Reader& take, const TakeScene& scene, ReadLoss& loss);
@@ -34,8 +34,15 @@ class DeviceRows {
   const std::vector<std::uint64_t>& steps() const noexcept { return steps_; }
   /// Why devices have no values, or not all; empty when they have.
   const std::string& gap() const noexcept { return gap_; }
-  /// How many values of the row of a step are not in the take, although the device had joined.
-  std::size_t missing_at(std::uint64_t step) const;
+  /// Devices that had joined and have no answer in the row of a step, by the reason.
+  struct Missing {
+    std::size_t lost = 0;    ///< the scene answered, and the take lacks the answer
+    std::size_t before = 0;  ///< likewise, before the first answer that was recorded
+    std::size_t silent = 0;  ///< the scene gave no answer
+  };
+  /// Reads the reason from the numbers of the answers and of the messages of their writer. An answer
+  /// that sim_node withholds has a number, and no message.
+  Missing missing_at(std::uint64_t step) const;
 
  private:
   struct Axis {
@@ -50,6 +57,14 @@ class DeviceRows {
     std::uint64_t sample;
     std::uint64_t turn;
   };
+  /// An answer that has a row.
+  struct Placed {
+    std::size_t row;
+    std::uint64_t number;
+    std::uint64_t sequence;         // of its message
+    std::uint64_t lost_before = 0;  // that the take lacks between the answer before it and this one
+  };
+  enum class Reason { kLost, kBefore, kSilent };
   struct Device {
     std::vector<double> value;  // of the newest sample
     std::vector<Taken> taken;
@@ -57,6 +72,10 @@ class DeviceRows {
     std::map<std::pair<std::uint64_t, std::uint64_t>, std::size_t> places;  // in taken
     std::uint64_t answer = 0;                                               // number of the newest
     std::uint64_t answer_turn = 0;
+    std::vector<std::uint64_t> numbers;  // of all answers of the epoch, ascending
+    std::vector<Placed> placed;          // ascending
+    std::uint64_t newest_received = 0;   // number of the newest answer that the device took
+    bool says_received = false;          // the take has what the device says of answers
   };
 
   void read_inputs(const mcap::Reader& take, const TakeScene& scene, ReadLoss& loss);
@@ -65,6 +84,14 @@ class DeviceRows {
   template <class Answer>
   void read_answers(const mcap::Reader& take, const std::string& topic, bool to_positions,
                     const TakeScene& scene, ReadLoss& loss);
+  /// Reads which answers the devices received: for rows behind the last answer.
+  template <class Sample>
+  void read_received(const mcap::Reader& take, const std::string& topic, const TakeScene& scene,
+                     ReadLoss& loss);
+  /// Counts what is missing between answers.
+  /// @param sequences  of all messages of their writer, in the order of the take
+  void count_lost(std::vector<std::uint64_t> sequences);
+  static Reason reason_of(const Device& device, std::size_t row);
   /// The row of an answer; the count of rows when it is not known.
   std::size_t row_of(Device& device, std::uint64_t answered_epoch, std::uint64_t answered_sample,
                      std::uint64_t answer) const;

@@ -30,12 +30,16 @@ class MessageSource {
   bool next(Message& message) {
     mcap::Message raw;
     while (cursor_.next(raw)) {
+      sequence_ = raw.sequence;
       if (dds::decode(raw.data, message)) return true;
       ++loss_.unreadable;
     }
     record_problems();
     return false;
   }
+
+  /// The number that its writer gave the message that next() returned last; 0: it gave none.
+  std::uint32_t sequence() const noexcept { return sequence_; }
 
  private:
   void record_problems() {
@@ -48,6 +52,7 @@ class MessageSource {
 
   mcap::MessageCursor cursor_;
   ReadLoss& loss_;
+  std::uint32_t sequence_ = 0;
 };
 
 }  // namespace cordis::cli

@@ -117,12 +117,18 @@ class TableExport {
     if (has_row) has_signal_row_ = true;
     value = put(value, has_row ? signals_.values() : nullptr, signals_.columns().size());
     if (devices_) value = put(value, devices_->values_at(step), devices_->columns().size());
-    if (devices_ && devices_->gap().empty()) missing_answers_ += devices_->missing_at(step);
+    if (devices_ && devices_->gap().empty()) add(devices_->missing_at(step));
     while (has_frame_ && frames_.step() < step) has_frame_ = frames_.next();
     const bool is_frame = has_frame_ && frames_.step() == step;
     put(value, is_frame ? frames_.values() : nullptr, frames_.columns().size());
     for (const auto& file : files_) file->write(row_);
     ++row_count_;
+  }
+
+  void add(const DeviceRows::Missing& more) {
+    missing_.lost += more.lost;
+    missing_.before += more.before;
+    missing_.silent += more.silent;
   }
 
   static double* put(double* cell, const double* values, std::size_t count) {
@@ -151,10 +157,17 @@ class TableExport {
       result.losses.push_back("the take lacks " +
                               config::count_text(frames_.lost_frames(), "frame") + " of the scene");
     if (devices_ && !devices_->gap().empty()) result.losses.push_back(devices_->gap());
-    if (missing_answers_ > 0)
-      result.losses.push_back("the take lacks " + config::count_text(missing_answers_, "answer") +
+    if (missing_.lost > 0)
+      result.losses.push_back("the take lacks " + config::count_text(missing_.lost, "answer") +
                               " to devices, which are on " + msg::TOPIC_FORCES + " and " +
                               msg::TOPIC_POSITIONS);
+    if (missing_.before > 0)
+      result.notes.push_back("the recorder began " + config::count_text(missing_.before, "answer") +
+                             " to devices later than the table: their cells are nan");
+    if (missing_.silent > 0)
+      result.notes.push_back("the scene gave no answer to devices in " +
+                             config::count_text(missing_.silent, "gesture period") +
+                             ": their cells are nan");
   }
 
   RowChoice choice_;
@@ -171,7 +184,7 @@ class TableExport {
   double last_number_ = 0.0;
   bool has_signal_row_ = false;
   std::uint64_t first_step_ = 0;
-  std::size_t missing_answers_ = 0;
+  DeviceRows::Missing missing_;
   std::uint64_t row_count_ = 0;
 };
 

@@ -153,15 +153,30 @@ class TakeExport : public testing::Test {
     inputs.sample().push_back(sample);
     put(msg::TOPIC_INPUTS, "SceneInputs", inputs);
   }
-  void put_answer(std::uint64_t number, double force) {
+  /// @param sample    the sample that it answers; 0: the one with its own number
+  /// @param sequence  number of the message; 0: its own number
+  void put_answer(std::uint64_t number, double force, std::uint64_t sample = 0,
+                  std::uint32_t sequence = 0) {
     msg::GestureForces forces;
     forces.device_id(3);
     forces.epoch(5);
     forces.sample(number);
     forces.answered_epoch(9);
-    forces.answered_sample(number);
+    forces.answered_sample(sample == 0 ? number : sample);
     forces.force_n()[0] = force;
+    sequence_ = sequence == 0 ? static_cast<std::uint32_t>(number) : sequence;
     put(msg::TOPIC_FORCES, "GestureForces", forces);
+  }
+
+  /// What the device wrote after it had received an answer.
+  void put_sample(std::uint64_t number, std::uint64_t received_answer) {
+    msg::GesturePositions positions;
+    positions.device_id(3);
+    positions.epoch(9);
+    positions.sample(number);
+    positions.answered_epoch(5);
+    positions.answered_sample(received_answer);
+    put(msg::TOPIC_POSITIONS, "GesturePositions", positions);
   }
 
   template <class Message>
@@ -171,10 +186,11 @@ class TakeExport : public testing::Test {
     const std::uint16_t channel = writer_->add_channel({0, schema, topic, "cdr", {}});
     const std::vector<std::byte> payload = dds::encode(message);
     ++time_;
-    EXPECT_EQ(writer_->write({channel, 1, time_, time_, payload}), mcap::WriteStatus::kOk);
+    EXPECT_EQ(writer_->write({channel, sequence_, time_, time_, payload}), mcap::WriteStatus::kOk);
   }
 
   std::string folder_;
+  std::uint32_t sequence_ = 1;  // of a message
   std::unique_ptr<mcap::Writer> writer_;
   std::uint64_t batch_ = 0;
   std::uint64_t time_ = 0;
@@ -271,6 +287,84 @@ TEST_F(TakeExport, CountsAnswersToDevicesThatAreMissing) {
   EXPECT_THAT(result.losses,
               testing::ElementsAre("the take lacks 1 answer to devices, which are on "
                                    "gesture/forces and gesture/positions"));
+}
+
+TEST_F(TakeExport, CallsASceneThatGaveNoAnswerNoLoss) {
+  begin("silent.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
+  for (const std::uint64_t number : {1u, 2u, 3u, 4u, 5u, 6u})
+    put_input(number, 0.5 * static_cast<double>(number));
+  put_answer(1, -1.0, 1);
+  put_answer(2, -2.0, 2);
+  put_answer(3, -5.0, 5);  // the scene was silent for samples 3 and 4: no number is missing
+  put_sample(6, /*received_answer=*/3);  // nor did the device receive an answer after it
+  const ExportResult result = close_and_export("silent");
+
+  EXPECT_THAT(text_of("silent.csv"),
+              testing::HasSubstr("\n0.003,3,1.5,nan\n0.004,4,2,nan\n0.005,5,2.5,-5\n"));
+  EXPECT_THAT(result.losses, testing::ElementsAre());
+  EXPECT_THAT(result.notes,
+              testing::ElementsAre("the scene gave no answer to devices in 3 gesture periods: "
+                                   "their cells are nan"));
+}
+
+TEST_F(TakeExport, CallsAnswersThatTheSceneWithheldNoLoss) {
+  begin("withheld.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0, 4.0, 5.0});
+  for (const std::uint64_t number : {1u, 2u, 3u, 4u, 5u})
+    put_input(number, 0.1 * static_cast<double>(number));
+  put_answer(1, -1.0);
+  put_answer(4, -4.0, 4, /*sequence=*/2);  // answers 2 and 3 count, and none was written
+  put_answer(5, -5.0, 5, /*sequence=*/3);
+  const ExportResult result = close_and_export("withheld");
+
+  EXPECT_THAT(result.losses, testing::ElementsAre());
+  EXPECT_THAT(result.notes,
+              testing::ElementsAre("the scene gave no answer to devices in 2 gesture periods: "
+                                   "their cells are nan"));
+}
+
+TEST_F(TakeExport, CountsAnswersThatAreLostWhereTheSceneWasSilentToo) {
+  begin("both.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
+  for (const std::uint64_t number : {1u, 2u, 3u, 4u, 5u, 6u})
+    put_input(number, 0.1 * static_cast<double>(number));
+  put_answer(1, -1.0, 1);
+  put_answer(3, -5.0, 5);                // of samples 2, 3 and 4 one was answered
+  put_sample(6, /*received_answer=*/4);  // the device received the answer to sample 6
+  const ExportResult result = close_and_export("both");
+
+  EXPECT_THAT(result.losses,
+              testing::ElementsAre("the take lacks 2 answers to devices, which are on "
+                                   "gesture/forces and gesture/positions"));
+  EXPECT_THAT(result.notes,
+              testing::ElementsAre("the scene gave no answer to devices in 2 gesture periods: "
+                                   "their cells are nan"));
+}
+
+TEST_F(TakeExport, CountsAnswersAtTheEndThatNothingIsKnownOf) {
+  begin("end.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0});
+  put_input(1, 0.1);
+  put_input(2, 0.2);
+  put_answer(1, -1.0);
+  EXPECT_THAT(close_and_export("end").losses,
+              testing::ElementsAre("the take lacks 1 answer to devices, which are on "
+                                   "gesture/forces and gesture/positions"));
+}
+
+TEST_F(TakeExport, CallsAnswersBeforeTheRecorderFoundTheSceneNoLoss) {
+  begin("early.mcap", /*has_port=*/true);
+  put_values(1, {1.0, 2.0, 3.0});
+  for (const std::uint64_t number : {1u, 2u, 3u})
+    put_input(number, 0.1 * static_cast<double>(number));
+  put_answer(3, -3.0);
+  const ExportResult result = close_and_export("early");
+
+  EXPECT_THAT(result.losses, testing::ElementsAre());
+  EXPECT_THAT(result.notes,
+              testing::ElementsAre("the recorder began 2 answers to devices later than the table: "
+                                   "their cells are nan"));
 }
 
 TEST_F(TakeExport, HasNoValuesOfDevicesBehindInputsThatAreLost) {
