@@ -38,6 +38,12 @@ std::int64_t since_boot_nsec() noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
+/// "kfb1 at 192.168.0.7:5005"; of a simulated device "mock".
+std::string name_of_driver(const DeviceConfig& config, const Driver& driver) {
+  const std::string address = driver.address();
+  return config.driver + (address.empty() ? "" : " at " + address);
+}
+
 void watch_guardian() noexcept {
   Guardian* const guardian = Guardian::of_process();
   if (guardian != nullptr) guardian->watch();
@@ -54,16 +60,19 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
       description_(participant, dds::Topic::kDevice),
       roster_(participant),
       series_{epoch, 0},
-      phases_(config_.name, config_.driver,
+      phases_(config_.name, name_of_driver(config_, *driver_),
               clock == config::Clock::kLockstep
                   ? std::chrono::duration<double>(kLockstepPatience).count()
                   : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
       status_(participant, msg::KIND_DEVICE_NODE, epoch, [this](msg::NodeStatus& status) {
         meter_.fill(status);
+        if (meter_.phase() == Phase::kNeverConnected || meter_.phase() == Phase::kReplaced)
+          status.text("driver " + name_of_driver(config_, *driver_) + ": " + status.text());
         const std::string refusal = scenes_.refusal();
         if (!refusal.empty()) status.text("refused " + refusal);
-        if (status.text().empty()) status.text(what_it_is(config_));
+        if (status.text().empty() && status.phase() != msg::PHASE_STOPPED)
+          status.text(what_it_is(config_));
         // in lockstep the scene's answers set the pace
         status.target_rate_hz(
             clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz * time_scale());
@@ -87,7 +96,7 @@ void Device::run() {
     }
   }
   meter_.publish_latency();
-  meter_.set_phase(Phase::kStopped);
+  meter_.set_phase(meter_.last_phase());
 }
 
 /// Publishes what the device is and what it supports.

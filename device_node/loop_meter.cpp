@@ -28,11 +28,28 @@ PhaseWords words_of(Phase phase) noexcept {
               "the board has let go of its motors; forces return by the ramp"};
     case Phase::kStopped:
       return {msg::PHASE_STOPPED, ""};
+    case Phase::kNeverConnected:
+      return {msg::PHASE_FAILED, "the device was never connected"};
+    case Phase::kReplaced:
+      return {msg::PHASE_STOPPED, "the device was never connected; another node played it"};
   }
   return {msg::PHASE_FAILED, "unknown phase"};
 }
 
 }  // namespace
+
+void LoopMeter::record_device(bool has_device, bool other_plays) noexcept {
+  is_sought_.store(true, std::memory_order_relaxed);
+  if (has_device) was_connected_.store(true, std::memory_order_relaxed);
+  if (other_plays) was_replaced_.store(true, std::memory_order_relaxed);
+}
+
+Phase LoopMeter::last_phase() const noexcept {
+  const bool missed =
+      is_sought_.load(std::memory_order_relaxed) && !was_connected_.load(std::memory_order_relaxed);
+  if (!missed) return Phase::kStopped;
+  return was_replaced_.load(std::memory_order_relaxed) ? Phase::kReplaced : Phase::kNeverConnected;
+}
 
 void LoopMeter::count_tick() noexcept {
   const std::uint64_t ticks = ticks_.fetch_add(1, std::memory_order_relaxed) + 1;

@@ -12,13 +12,15 @@ namespace cordis::device {
 
 /// How a device stands with the scene.
 enum class Phase : std::uint8_t {
-  kWaiting,       ///< no scene or no answer has been received yet; motors off
-  kUnused,        ///< the scene does not name the device; motors off
-  kRunning,       ///< answers come in time
-  kStandby,       ///< the scene answers another node that plays the same device; motors off
-  kLost,          ///< answers no longer come, or the driver has no device; motors at zero
-  kDisconnected,  ///< the board or the guardian has let go of the motors
-  kStopped        ///< the node is ending as it was asked to
+  kWaiting,         ///< no scene or no answer has been received yet; motors off
+  kUnused,          ///< the scene does not name the device; motors off
+  kRunning,         ///< answers come in time
+  kStandby,         ///< the scene answers another node that plays the same device; motors off
+  kLost,            ///< answers no longer come, or the driver has no device; motors at zero
+  kDisconnected,    ///< the board or the guardian has let go of the motors
+  kStopped,         ///< the node is ending as it was asked to
+  kNeverConnected,  ///< likewise, and the driver has never had its device
+  kReplaced         ///< likewise; another node has played it
 };
 
 /// Counters of one device. The loop thread writes; fill() may be called from another thread.
@@ -26,6 +28,14 @@ class LoopMeter {
  public:
   void set_phase(Phase phase) noexcept { phase_.store(phase, std::memory_order_relaxed); }
   Phase phase() const noexcept { return phase_.load(std::memory_order_relaxed); }
+
+  /// After a tick. @param has_device  the driver has its device. @param other_plays  the scene answers
+  /// another node that plays it
+  void record_device(bool has_device, bool other_plays) noexcept;
+
+  /// The phase of a node that ends as it was asked to: kStopped, unless the driver has looked for its
+  /// device and never had it.
+  Phase last_phase() const noexcept;
 
   void count_tick() noexcept;
   void count_dropped() noexcept { dropped_.fetch_add(1, std::memory_order_relaxed); }
@@ -52,6 +62,9 @@ class LoopMeter {
 
  private:
   std::atomic<Phase> phase_{Phase::kWaiting};
+  std::atomic<bool> is_sought_{false};  // there has been a tick
+  std::atomic<bool> was_connected_{false};
+  std::atomic<bool> was_replaced_{false};  // by another node
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};

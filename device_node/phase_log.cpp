@@ -6,6 +6,11 @@
 #include <spdlog/spdlog.h>
 
 namespace cordis::device {
+namespace {
+
+constexpr std::int64_t kFirstAnswerWithin = 3'000'000'000;  // [ns]
+
+}  // namespace
 
 PhaseLog::PhaseLog(std::string device, std::string driver, double silence_s)
     : device_(std::move(device)),
@@ -19,6 +24,7 @@ PhaseLog::PhaseLog(std::string device, std::string driver, double silence_s)
       returns_("played again", spdlog::level::info) {}
 
 bool PhaseLog::note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept {
+  had_device_ = had_device_ || has_device;
   if (phase == noted_) return false;
   const bool was_lost = noted_ == Phase::kLost || noted_ == Phase::kDisconnected;
   if (phase == Phase::kStandby && standby_.record(now_nsec)) {
@@ -37,25 +43,45 @@ bool PhaseLog::note(Phase phase, bool has_device, std::int64_t now_nsec) noexcep
   } else if (phase == Phase::kRunning && was_lost) {
     log_return(now_nsec);
   }
+  has_played_ = has_played_ || phase == Phase::kRunning;
   noted_ = phase;
   return true;
 }
 
 void PhaseLog::log_loss(bool has_device, std::int64_t now_nsec) noexcept {
-  if (!has_device) {
-    if (no_device_.record(now_nsec))
-      spdlog::warn("driver {}: the device does not answer; trying again", driver_);
+  if (!has_device && !had_device_) {
+    awaits_first_ = true;
+  } else if (!has_device) {
+    log_absence(now_nsec);
   } else if (no_scene_.record(now_nsec)) {
     spdlog::warn("no answer from the scene for more than {} ms: motors at zero", silence_s_ * 1e3);
   }
 }
 
+void PhaseLog::log_absence(std::int64_t now_nsec) noexcept {
+  if (!no_device_.record(now_nsec)) return;
+  spdlog::warn(
+      "driver {}: the device does not answer; trying again. Check its power, its cable, and its "
+      "address in the device file",
+      driver_);
+}
+
 void PhaseLog::log_return(std::int64_t now_nsec) noexcept {
+  awaits_first_ = false;
+  if (!has_played_) {
+    spdlog::info("plays '{}'", device_);
+    return;
+  }
   const double away_s = static_cast<double>(now_nsec - lost_since_nsec_) * 1e-9;
   if (returns_.record(now_nsec, away_s)) spdlog::info("plays again after {:.3f} s", away_s);
 }
 
 void PhaseLog::report(std::int64_t now_nsec) noexcept {
+  awaits_first_ = awaits_first_ && !had_device_;
+  if (awaits_first_ && now_nsec - lost_since_nsec_ >= kFirstAnswerWithin) {
+    awaits_first_ = false;
+    log_absence(now_nsec);
+  }
   for (node::RepeatedEvent* event :
        {&standby_, &let_go_, &no_device_, &no_scene_, &takes_over_, &returns_})
     event->report(now_nsec);

@@ -9,10 +9,12 @@
 
 namespace cordis::device {
 
-/// Logs the changes of phase of a device; a phase that comes and goes is a line per 5 s. Real time:
-/// takes no lock, allocates nothing.
+/// Logs the changes of phase of a device; a phase that comes and goes is a line per 5 s. A device
+/// that has never answered is missing after 3 s, for a board may reset when its line is opened. Real
+/// time: takes no lock, allocates nothing.
 class PhaseLog {
  public:
+  /// @param driver     and the address of its device: "kfb1 at 192.168.0.7:5005"
   /// @param silence_s  of the scene after which a device is lost
   PhaseLog(std::string device, std::string driver, double silence_s);
 
@@ -28,6 +30,7 @@ class PhaseLog {
 
  private:
   void log_loss(bool has_device, std::int64_t now_nsec) noexcept;
+  void log_absence(std::int64_t now_nsec) noexcept;
   void log_return(std::int64_t now_nsec) noexcept;
 
   std::string device_;
@@ -35,6 +38,9 @@ class PhaseLog {
   double silence_s_;
   Phase noted_ = Phase::kWaiting;
   std::int64_t lost_since_nsec_ = 0;
+  bool had_device_ = false;
+  bool awaits_first_ = false;  // the device has not answered yet, and no line says so
+  bool has_played_ = false;
   node::RepeatedEvent standby_;
   node::RepeatedEvent let_go_;
   node::RepeatedEvent no_device_;

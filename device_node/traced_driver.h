@@ -33,6 +33,7 @@ class TracedDriver final : public Driver {
   bool begin_period() noexcept override { return driver_->begin_period(); }
   bool change_command(const AxisValues& commanded, double share) noexcept override;
   bool has_motors() const noexcept override { return driver_->has_motors(); }
+  std::string address() const override { return driver_->address(); }
   BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }
   bool is_let_go() const noexcept override { return driver_->is_let_go(); }
   bool is_yielding() const noexcept override { return driver_->is_yielding(); }

@@ -133,11 +133,12 @@ void add_run_verb(CommandLine& line) {
   verb.option("--signals", "FILE", options.signals_file,
               "Also write the signals of the scene into a table, a row per gesture period");
   verb.option("--summary", "FILE", options.summary_file,
-              "Also write least, largest, mean and last value of each signal, as JSON");
+              "Also write least, largest, mean and last value of each signal, and how each node "
+              "ended, as JSON");
   verb.flag("--no-color", options.no_color, "No colours, even on a terminal");
   verb.examples(
       "--duration is simulated time in a lockstep or asap session; in a realtime session\n"
-      "it counts from the moment all nodes run.\n"
+      "it counts from the moment all nodes run, at the latest from 5 s after the start.\n"
       "Each session has a DDS domain of its own on its host, which the first line names;\n"
       "domain=N chooses one, which a session on several hosts needs.\n"
       "--signals and --summary take what comes over DDS, from the first row on; in lockstep and\n"
@@ -149,7 +150,10 @@ void add_run_verb(CommandLine& line) {
       "The session ends when a required node (any but a viz_node, unless the file says\n"
       "otherwise) ends or is given up.\n"
       "Exit code: 0 all well, else that of the first required node that was given up:\n"
-      "1 failed at run time, 2 bad file or command line, 128 + signal when it was killed.\n\n"
+      "1 failed at run time, 2 bad file or command line, 128 + signal when it was killed.\n"
+      "1 too where the board of a required device was never connected, and no hot standby\n"
+      "played the device. The end says so; 'complete' of the summary is false then, and its\n"
+      "'nodes' has the phase of each node, with the reason.\n\n"
       "Examples:\n"
       "  cordis run launch_configs/plucked_string.yaml\n"
       "  cordis run launch_configs/plucked_string.yaml keyboard.driver=script view.port=8081\n"

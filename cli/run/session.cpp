@@ -153,8 +153,11 @@ class Session : public Watcher {
       if (restarts_[i] > 0)
         output_.print(names[i] + " was started again " + config::count_text(restarts_[i], "time"));
     }
+    for (const PlannedNode& node : plan_.nodes) {
+      if (has_failed(node.name) && node.required && result_ == kSuccess) result_ = kFailure;
+    }
     if (signals_) {
-      output_.print(signals_->finish());
+      output_.print(signals_->finish(ends_of_nodes()));
       if (!signals_->is_whole() && result_ == kSuccess) result_ = kFailure;
       if (!signals_->is_whole() && failure_ == kSuccess) failure_ = kFailure;
     }
@@ -162,6 +165,28 @@ class Session : public Watcher {
   }
 
  private:
+  /// True if the last status of a node says so, whatever its process ended with.
+  bool has_failed(const std::string& node) const {
+    const msg::NodeStatus* status = board_.find(node);
+    return status != nullptr && status->phase() == msg::PHASE_FAILED;
+  }
+
+  /// How each node stood at the end, for the summary.
+  std::vector<NodeEnd> ends_of_nodes() const {
+    std::vector<NodeEnd> ends;
+    for (const PlannedNode& node : plan_.nodes) {
+      const msg::NodeStatus* status = board_.find(node.name);
+      NodeEnd& end = ends.emplace_back(NodeEnd{.name = node.name, .program = node.program});
+      if (status == nullptr) continue;
+      end.phase = node::word_of(status->phase());
+      end.has_failed = node.required && has_failed(node.name);
+      const bool is_device = status->kind() == msg::KIND_DEVICE_NODE;
+      if (has_failed(node.name) || (is_device && node::has_ended(status->phase())))
+        end.reason = status->text();
+    }
+    return ends;
+  }
+
   void stop() {
     stopped_ = true;
     board_.begin_stop();

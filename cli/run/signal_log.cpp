@@ -104,33 +104,41 @@ bool SignalRows::add(const msg::SceneSignals& batch) {
   return true;
 }
 
-void SignalRows::write_summary() {
+void SignalRows::write_summary(const std::vector<NodeEnd>& nodes) {
   Json columns = Json::object();
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const ColumnSummary& column = summaries_[i];
     if (column.count() == 0) continue;
     columns[names_[i]] = column.json(units_[i]);
   }
+  Json ends = Json::object();
+  for (const NodeEnd& node : nodes) {
+    Json& end = ends[node.name] = {{"node", node.program}, {"phase", node.phase}};
+    if (!node.reason.empty()) end["reason"] = node.reason;
+  }
+  const bool has_failed =
+      std::ranges::any_of(nodes, [](const NodeEnd& node) { return node.has_failed; });
   const Json json = {{"scene", scene_},
                      {"step_rate_hz", step_rate_hz_},
                      {"last_step", last_step_},
                      {"rows", row_count_},
                      {"lost_rows", lost_rows_},
                      {"starts", starts_},
-                     {"complete", lost_rows_ == 0 && starts_ == 1 && !is_over_},
+                     {"complete", lost_rows_ == 0 && starts_ == 1 && !is_over_ && !has_failed},
+                     {"nodes", ends},
                      {"columns", columns}};
   summary_file_->write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   summary_file_->flush();
 }
 
-void SignalRows::finish() {
+void SignalRows::finish(const std::vector<NodeEnd>& nodes) {
   try {
     if (table_file_) table_file_->flush();
   } catch (const std::runtime_error& error) {
     lose_table(error.what());
   }
   try {
-    if (summary_file_) write_summary();
+    if (summary_file_) write_summary(nodes);
   } catch (const std::runtime_error& error) {
     failure_ += (failure_.empty() ? "" : "; ") + std::string(error.what());
   }
@@ -182,13 +190,14 @@ void SignalLog::loop() {
       take();
     }
     take();
-    rows_.finish();
+    rows_.finish(nodes_);
   } catch (const std::exception& error) {
     failure_ = error.what();
   }
 }
 
-std::string SignalLog::finish() {
+std::string SignalLog::finish(const std::vector<NodeEnd>& nodes) {
+  nodes_ = nodes;
   ending_.store(true);
   signals_.interrupt();
   thread_.join();

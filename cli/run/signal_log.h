@@ -18,6 +18,15 @@
 
 namespace cordis::cli {
 
+/// How a node of the session stood at its end.
+struct NodeEnd {
+  std::string name;
+  std::string program;
+  std::string phase = "unknown";  ///< in words: "stopped"
+  bool has_failed = false;        ///< and the session needs it
+  std::string reason{};           ///< why it has failed, or was not needed; else empty
+};
+
 /// Rows of signals from batches of `scene/signals`, and what of them never came.
 class SignalRows {
  public:
@@ -29,9 +38,9 @@ class SignalRows {
   /// Adds the rows of a batch of that scene.
   /// @return false when the batch belongs to another scene, whose description may come behind it
   bool add(const msg::SceneSignals& batch);
-  /// Completes the files; the summary also of a table that took no more.
+  /// Completes the files; the summary also of a table that took no more, with the end of each node.
   /// @throws std::runtime_error when a file took no more
-  void finish();
+  void finish(const std::vector<NodeEnd>& nodes);
 
   /// What a person has to know at the end, in one sentence.
   std::string text() const;
@@ -39,7 +48,7 @@ class SignalRows {
   std::uint64_t lost_rows() const noexcept { return lost_rows_; }
 
  private:
-  void write_summary();
+  void write_summary(const std::vector<NodeEnd>& nodes);
   void write_line();
   void lose_table(const std::string& reason);
 
@@ -72,8 +81,9 @@ class SignalLog {
   SignalLog(const SignalLog&) = delete;
   SignalLog& operator=(const SignalLog&) = delete;
 
-  /// Takes what has come, and completes the files. @return what a person has to know
-  std::string finish();
+  /// Takes what has come, and completes the files. @param nodes  of the session, for the summary
+  /// @return what a person has to know
+  std::string finish(const std::vector<NodeEnd>& nodes);
   /// True unless a file took no more.
   bool is_whole() const noexcept { return failure_.empty(); }
 
@@ -85,6 +95,7 @@ class SignalLog {
   dds::Reader<msg::SceneDescription> descriptions_;
   dds::Reader<msg::SceneSignals> signals_;
   std::deque<msg::SceneSignals> waiting_;  // for their description
+  std::vector<NodeEnd> nodes_;             // set before ending_
   std::string failure_;
   std::atomic<bool> ending_{false};
   std::thread thread_;

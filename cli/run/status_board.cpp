@@ -63,13 +63,20 @@ std::string partners_of(const msg::NodeStatus& status) {
                      passed ? ": beyond it the scene may have been UNSTABLE" : "");
 }
 
+/// True if the text of a node is part of the account: of a device that which it ends with.
+bool has_account(const msg::NodeStatus& status) {
+  if (status.text().empty()) return false;
+  const bool has_ended = status.phase() == msg::PHASE_STOPPED;
+  return status.kind() == msg::KIND_SIM_NODE || status.kind() == msg::KIND_RECORD_NODE ||
+         (status.kind() == msg::KIND_DEVICE_NODE && has_ended);
+}
+
 /// What does not fit the table, in lines.
 std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
   if (status.phase() == msg::PHASE_FAILED && !status.text().empty()) {
     text += fmt::format("{} failed: {}\n", node, status.text());
-  } else if ((status.kind() == msg::KIND_SIM_NODE || status.kind() == msg::KIND_RECORD_NODE) &&
-             !status.text().empty()) {
+  } else if (has_account(status)) {
     text += fmt::format("{}: {}\n", node, status.text());
   }
   if (status.kind() == msg::KIND_DEVICE_NODE &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "device_node/axis.h"
 
@@ -67,6 +68,9 @@ class Driver {
   /// True if it drives motors of this world. For a simulated device no time passes while a scene in
   /// lockstep is silent or over; a hand at a real one lives on.
   virtual bool has_motors() const noexcept { return false; }
+
+  /// Where its device is plugged in, for a person; empty without one.
+  virtual std::string address() const { return {}; }
 
   virtual BoardWatchdog board_watchdog() const noexcept { return BoardWatchdog::kLetsGo; }
 

@@ -54,6 +54,7 @@ class Hardware : public Driver {
   void record_age(double age_s) noexcept override { age_s_ = age_s; }
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return true; }
+  std::string address() const override { return wire_->address(); }
   bool is_let_go() const noexcept override { return is_let_go_; }
   void let_go() noexcept override;
   void stop() noexcept override;

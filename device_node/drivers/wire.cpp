@@ -42,6 +42,8 @@ class SerialLine final : public Wire {
  public:
   SerialLine(std::string path, speed_t baud) : path_(std::move(path)), baud_(baud) {}
 
+  std::string address() const override { return path_; }
+
  protected:
   bool connect() noexcept override {
     file_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -87,6 +89,8 @@ class Datagrams final : public Wire {
   ~Datagrams() override {
     if (lock_ >= 0) ::close(lock_);
   }
+
+  std::string address() const override { return name_; }
 
  protected:
   bool connect() noexcept override {

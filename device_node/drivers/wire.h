@@ -23,6 +23,9 @@ class Wire {
   Wire& operator=(const Wire&) = delete;
   virtual ~Wire();
 
+  /// Where the device is plugged in: a serial line, or ADDRESS:PORT; empty when it has no name.
+  virtual std::string address() const { return {}; }
+
   /// What takes the force from the motors, whoever writes it; to be set before open().
   void set_release(const ReleaseFrame& release) noexcept { release_ = release; }
 

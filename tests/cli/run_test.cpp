@@ -253,6 +253,26 @@ TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {
   EXPECT_FALSE(contains(output, "not all nodes run yet"));
 }
 
+TEST(Run, FailsWhereARequiredNodeSaysThatItFailed) {
+  FakeSession session;
+  session.node("sim", "run");
+  session.node("view", "run;say views");
+  session.node("key", "phase failed;say failed");
+  const auto run = session.start();
+  ASSERT_TRUE(run->wait_for_output("key    | failed\n", kPatience));
+  ASSERT_TRUE(run->wait_for_output("view   | views\n", kPatience));
+  run->signal(SIGINT);
+  EXPECT_EQ(end_of(*run), 1);
+
+  session.node("key", "run;say runs");
+  session.node("view", "phase failed;say failed");
+  const auto again = session.start();
+  ASSERT_TRUE(again->wait_for_output("key    | runs\n", kPatience));
+  ASSERT_TRUE(again->wait_for_output("view   | failed\n", kPatience));
+  again->signal(SIGINT);
+  EXPECT_EQ(end_of(*again), 0) << "no session needs its view";
+}
+
 TEST(Run, LeavesSimulatedTimeToTheSimulation) {
   FakeSession session;
   session.clock("lockstep");

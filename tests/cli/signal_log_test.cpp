@@ -60,7 +60,7 @@ TEST(SignalRows, TheSummaryIsCompleteWhereTheTableHasNoRoom) {
   for (std::uint64_t batch = 0; batch < 100; ++batch) table.add(rows(1, 8 + 800 * batch, 100));
   std::string failure;
   try {
-    table.finish();
+    table.finish({});
   } catch (const std::runtime_error& error) {
     failure = error.what();
   }
@@ -72,12 +72,33 @@ TEST(SignalRows, TheSummaryIsCompleteWhereTheTableHasNoRoom) {
   std::filesystem::remove(file);
 }
 
+TEST(SignalRows, TheSummarySaysHowEachNodeEnded) {
+  const std::string file = testing::TempDir() + "ended_nodes." + std::to_string(getpid()) + ".json";
+  const NodeEnd sim{.name = "sim", .program = "sim_node", .phase = "stopped"};
+  NodeEnd key{.name = "key", .program = "device_node", .phase = "failed", .reason = "no board"};
+  for (const bool is_required : {false, true}) {
+    SignalRows table("", file);
+    table.begin(described(1));
+    table.add(rows(1, 8, 100));
+    key.has_failed = is_required;
+    table.finish({sim, key});
+
+    std::ifstream text(file);
+    const nlohmann::json summary = nlohmann::json::parse(text);
+    EXPECT_EQ(summary["complete"], !is_required);
+    EXPECT_EQ(summary["nodes"].dump(),
+              R"({"key":{"node":"device_node","phase":"failed","reason":"no board"},)"
+              R"("sim":{"node":"sim_node","phase":"stopped"}})");
+  }
+  std::filesystem::remove(file);
+}
+
 TEST(SignalRows, ASummaryThatHasNoRoomIsSaidToo) {
   SignalRows table("/dev/full", "/dev/full");
   table.begin(described(1));
   table.add(rows(1, 8, 100));
   try {
-    table.finish();
+    table.finish({});
     ADD_FAILURE() << "both files are full";
   } catch (const std::runtime_error& error) {
     const std::string said = error.what();

@@ -188,6 +188,22 @@ TEST(StatusTable, ReportsWhyANodeFailed) {
             std::string::npos);
 }
 
+TEST(StatusTable, SaysWhatADeviceEndsWith) {
+  StatusBoard board(0);
+  msg::NodeStatus key = status_of("key", msg::KIND_DEVICE_NODE, 1);
+  key.phase(msg::PHASE_RUNNING);
+  key.text("1 axis, driver kfb1");
+  board.put(key);
+  EXPECT_EQ(status_table({"key"}, board).find("driver kfb1"), std::string::npos);
+
+  key.phase(msg::PHASE_STOPPED);
+  key.text("the device was never connected; another node played it");
+  board.put(key);
+  EXPECT_NE(status_table({"key"}, board)
+                .find("key: the device was never connected; another node played it\n"),
+            std::string::npos);
+}
+
 TEST(StatusTable, SaysWhereTheTakeIs) {
   StatusBoard board(0);
   msg::NodeStatus record = status_of("record", msg::KIND_RECORD_NODE, 1);

@@ -244,6 +244,23 @@ TEST(Exchange, ForceIsZeroOnceItsSampleIsAsOldAsTheWatchdog) {
   EXPECT_EQ(rig.meter.phase(), Phase::kRunning);
 }
 
+TEST(Exchange, RecordsThatADeviceWithMotorsWasNeverConnected) {
+  for (const bool lockstep : {false, true}) {
+    Rig rig(lockstep);
+    rig.driver.motors = true;
+    rig.driver.present = false;
+    rig.exchange.step();
+    EXPECT_EQ(rig.meter.last_phase(), Phase::kNeverConnected);
+    rig.driver.present = true;
+    rig.exchange.step();
+    EXPECT_EQ(rig.meter.last_phase(), Phase::kStopped);
+  }
+  Rig simulated(false);
+  simulated.driver.present = false;
+  simulated.exchange.step();
+  EXPECT_EQ(simulated.meter.last_phase(), Phase::kStopped) << "it has no board";
+}
+
 TEST(Exchange, ASceneThatTalksButDoesNotListenIsSilent) {
   Rig rig(false);
   rig.period(true, 4.0);

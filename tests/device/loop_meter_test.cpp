@@ -60,6 +60,27 @@ TEST(LoopMeter, ReportsItsPhase) {
   EXPECT_EQ(status_of(meter).phase(), msg::PHASE_STOPPED);
 }
 
+TEST(LoopMeter, EndsWithTheDeviceThatWasNeverConnected) {
+  LoopMeter meter;
+  EXPECT_EQ(meter.last_phase(), Phase::kStopped) << "no scene asked for the device";
+
+  meter.record_device(false, false);
+  EXPECT_EQ(meter.last_phase(), Phase::kNeverConnected);
+  meter.set_phase(meter.last_phase());
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_FAILED);
+  EXPECT_EQ(status_of(meter).text(), "the device was never connected");
+
+  meter.record_device(false, true);
+  EXPECT_EQ(meter.last_phase(), Phase::kReplaced);
+  meter.set_phase(meter.last_phase());
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_STOPPED);
+  EXPECT_EQ(status_of(meter).text(), "the device was never connected; another node played it");
+
+  meter.record_device(true, false);
+  meter.record_device(false, false);  // it was unplugged
+  EXPECT_EQ(meter.last_phase(), Phase::kStopped);
+}
+
 TEST(LoopMeter, ShowsLatenciesEvery256Ticks) {
   LoopMeter meter;
   for (int n = 0; n < 99; ++n) meter.record_latency(100'000);

@@ -30,10 +30,43 @@ TEST(PhaseLog, ReportsEachChangeInItsWords) {
   EXPECT_EQ(log.lines(""),
             R"(no answer from the scene for more than 20 ms: motors at zero
 plays again after 0.250 s
-driver kfb1: the device does not answer; trying again
+driver kfb1: the device does not answer; trying again. Check its power, its cable, and its address in the device file
 driver kfb1: the motors have been let go of outside the loop; forces return by the ramp
 another node plays 'keyboard' with more strength; ready to take over
 takes over 'keyboard'
+)");
+}
+
+/// Lets the device be missing from 0 on, a look per 100 ms.
+void miss_first_device(PhaseLog& phases, std::int64_t until) {
+  for (std::int64_t now = 0; now <= until; now += 100 * kMillisecond) {
+    phases.note(Phase::kLost, false, now);
+    phases.report(now);
+  }
+}
+
+TEST(PhaseLog, WarnsOfNoDeviceThatAnswersWithin3Seconds) {
+  const test::CapturedLog log;
+  PhaseLog phases = key_log();
+  miss_first_device(phases, 2900 * kMillisecond);
+  phases.note(Phase::kLost, true, 2950 * kMillisecond);  // it is there; the scene answers next
+  phases.report(2950 * kMillisecond);
+  phases.report(3100 * kMillisecond);
+  phases.note(Phase::kRunning, true, 3200 * kMillisecond);
+
+  EXPECT_EQ(log.lines(""), "plays 'keyboard'\n");
+}
+
+TEST(PhaseLog, WarnsOnceOfADeviceThatIsMissingFromTheStart) {
+  const test::CapturedLog log;
+  PhaseLog phases = key_log();
+  miss_first_device(phases, 9000 * kMillisecond);
+  phases.note(Phase::kRunning, true, 9100 * kMillisecond);
+
+  EXPECT_EQ(
+      log.lines(""),
+      R"(driver kfb1: the device does not answer; trying again. Check its power, its cable, and its address in the device file
+plays 'keyboard'
 )");
 }
 
