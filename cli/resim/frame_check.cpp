@@ -68,6 +68,7 @@ void FrameCheck::check(const sim::Simulation& simulation, std::uint64_t version)
     }
     map_mats(simulation, version);
     pending_ = difference(simulation);
+    if (by_ == By::kTime) compare_forces(simulation);
     if (by_ == By::kHash) return;  // a command may follow in the same step, before the frame
     close_frame(pending_->largest_m <= tolerance_m_);
   }
@@ -103,6 +104,7 @@ void FrameCheck::map_mats(const sim::Simulation& simulation, std::uint64_t versi
   mapped_version_ = version;
   layout_ = sim::layout_of(simulation.scene());
   mats_.clear();
+  map_ports(simulation, version);
   const std::size_t in_frame = frame_.position_m().size() / 3;
   if (in_frame == simulation.scene().network.mats.size()) {
     for (std::uint32_t mat = 0; mat < in_frame; ++mat) mats_.emplace_back(mat, mat);
@@ -117,6 +119,41 @@ void FrameCheck::map_mats(const sim::Simulation& simulation, std::uint64_t versi
         if (ours.first() + i < in_frame) mats_.emplace_back(ours.first() + i, theirs.first + i);
       }
     }
+  }
+}
+
+void FrameCheck::map_ports(const sim::Simulation& simulation, std::uint64_t version) {
+  ports_.clear();
+  const msg::SceneDescription* description = take_.description(version);
+  if (description == nullptr) return;
+  const std::vector<scene::Port>& ports = simulation.scene().ports;
+  const auto mats = sim::port_mats_of(simulation.scene());
+  for (std::size_t ours = 0; ours < description->ports().size(); ++ours) {
+    const std::string& name = description->ports()[ours].name();
+    const auto theirs = std::ranges::find(ports, name, &scene::Port::name);
+    if (theirs == ports.end()) continue;
+    ports_.push_back({name, ours, mats[static_cast<std::size_t>(theirs - ports.begin())]});
+  }
+}
+
+/// Takes of before wire version 10 may have no forces.
+void FrameCheck::compare_forces(const sim::Simulation& simulation) {
+  const std::vector<float>& taken = frame_.port_force_n();
+  for (const ComparedPort& port : ports_) {
+    if (taken.size() < 3 * port.in_frame + 3) continue;
+    engine::Vec3 sum = engine::Vec3::Zero();
+    for (const std::uint32_t mat : port.mats) sum += simulation.world().link_force(mat);
+    std::array<float, 3> now{};
+    layout_.show_force(port.mats.front(), sum.data(), now.data());
+    const float* before = taken.data() + 3 * port.in_frame;
+    const double far_n = std::hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]);
+    if (findings_.force && far_n <= findings_.force->largest_n) continue;
+    findings_.force = ForceDifference{.step = frame_.step(),
+                                      .time_s = frame_.simulated_s(),
+                                      .largest_n = far_n,
+                                      .taken_n = std::hypot(before[0], before[1], before[2]),
+                                      .now_n = std::hypot(now[0], now[1], now[2]),
+                                      .port = port.name};
   }
 }
 

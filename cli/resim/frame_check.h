@@ -22,6 +22,16 @@ struct FrameDifference {
   std::string mat;            ///< which one it is
 };
 
+/// How far the force on a port in a frame is from that in the scene that is computed.
+struct ForceDifference {
+  std::uint64_t step = 0;  ///< step of the frame
+  double time_s = 0.0;     ///< simulated
+  double largest_n = 0.0;  ///< length of the difference of the two forces
+  double taken_n = 0.0;    ///< length of the force in the frame
+  double now_n = 0.0;      ///< and in the scene that is computed
+  std::string port;
+};
+
 /// What was found in all frames.
 struct FrameFindings {
   std::uint64_t frames = 0;              ///< compared
@@ -31,6 +41,7 @@ struct FrameFindings {
   std::optional<FrameDifference> largest;  ///< largest difference of all frames
   double sum_of_squares_m2 = 0.0;          ///< over all MATs of all frames
   std::uint64_t distances = 0;             ///< behind that sum
+  std::optional<ForceDifference> force;    ///< largest of all frames; only of another model
   std::uint64_t beyond = 0;                ///< frames after the last computed step
 
   double rms_m() const noexcept;
@@ -66,7 +77,9 @@ class FrameCheck {
  private:
   int order(const sim::Simulation& simulation, std::uint64_t version) const noexcept;
   void map_mats(const sim::Simulation& simulation, std::uint64_t version);
+  void map_ports(const sim::Simulation& simulation, std::uint64_t version);
   FrameDifference difference(const sim::Simulation& simulation);
+  void compare_forces(const sim::Simulation& simulation);
   void keep(const sim::Simulation& simulation);
   void close_frame(bool is_equal);
   void advance();
@@ -82,6 +95,12 @@ class FrameCheck {
   const scene::Scene* mapped_scene_ = nullptr;
   std::uint64_t mapped_version_ = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> mats_;  // of the frame, of the scene
+  struct ComparedPort {
+    std::string name;
+    std::size_t in_frame = 0;
+    std::vector<std::uint32_t> mats;  // of the scene
+  };
+  std::vector<ComparedPort> ports_;  // those of the same name
   sim::FrameLayout layout_;
   bool keeps_ = false;
   std::vector<Computed> computed_;

@@ -54,6 +54,14 @@ std::string differences_of(const FrameFindings& findings) {
     text += "largest difference at " + place_text(*findings.largest) + "\n";
     text += fmt::format("rms {:.3g} m over all MATs of the frames that differ\n", findings.rms_m());
   }
+  if (findings.force && findings.force->largest_n > 0.0) {
+    const ForceDifference& found = *findings.force;
+    text += fmt::format(
+        "largest difference of a force on a port at step {} ({:.6g} s): {:.3g} N, '{}', {:.3g} N "
+        "in "
+        "the take and {:.3g} N now\n",
+        found.step, found.time_s, found.largest_n, found.port, found.taken_n, found.now_n);
+  }
   if (findings.unmatched > 0) {
     text +=
         config::count_text(findings.unmatched, "frame") + " show steps that are not passed now\n";
@@ -151,8 +159,10 @@ std::string text_of(const ResimResult& result, const ResimOptions& options) {
     if (findings.distances == 0) {
       text += "no MAT of the take is in this scene: none has the same name\n";
     } else if (findings.largest->largest_m == 0.0) {
-      text += "no difference\n";
+      text += "no difference of positions\n";
     }
+    if (findings.force && findings.force->largest_n == 0.0)
+      text += "no difference of forces on ports\n";
     text += differences_of(findings);
   } else if (result.is_equal()) {
     text +=

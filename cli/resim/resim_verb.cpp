@@ -103,7 +103,7 @@ void add_resim_verb(CommandLine& line) {
       "Without DDS, as fast as it can. Every frame of the take is compared with the scene that "
       "its\n"
       "inputs lead to (docs/recording.md). With another model the report says how far positions\n"
-      "differ.\n"
+      "and the forces on ports differ.\n"
       "Exit code: 0 equal or compared, 1 it differs, 2 a file or a word is wrong, 3 the take "
       "lacks\n"
       "something.\n\n"

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <sndfile.h>
@@ -19,6 +23,39 @@ constexpr std::size_t kBlock = 1024;  // frames at a time
 constexpr std::size_t kRoom = 16384;  // frames that a resampler makes at a time
 constexpr std::array<double, 11> kCardRates{8000,  11025, 16000, 22050,  32000, 44100,
                                             48000, 88200, 96000, 176400, 192000};
+
+/// Describes a file of 32-bit floating point as a plain WAV file does.
+///
+/// libsndfile describes what may become an RF64 file by WAVE_FORMAT_EXTENSIBLE, which not every program
+/// reads. Below 4 GiB it is a WAV file in the end, and the plain description takes 24 of the 48 bytes.
+/// @return false if the file cannot be read or written
+bool make_plain(const std::string& path) {
+  constexpr std::size_t kFirstChunk = 12;
+  constexpr std::uint32_t kExtensible = 40;                                 // bytes
+  constexpr std::array<char, 6> kPlain{16, 0, 0, 0, 3, 0};                  // bytes, IEEE floats
+  constexpr std::array<char, 24> kFiller{'J', 'U', 'N', 'K', 16, 0, 0, 0};  // and nothing
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  std::string head(256, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  if (!head.starts_with("RIFF")) return !head.empty();
+  file.clear();  // a short file ends within the head
+  for (std::size_t place = kFirstChunk; place + 8 <= head.size();) {
+    std::uint32_t size = 0;
+    std::memcpy(&size, head.data() + place + 4, sizeof size);
+    if (head.compare(place, 4, "fmt ") != 0) {
+      place += 8 + std::size_t{size};
+      continue;
+    }
+    if (size != kExtensible) return true;
+    file.seekp(static_cast<std::streamoff>(place + 4));
+    file.write(kPlain.data(), kPlain.size());
+    file.seekp(static_cast<std::streamoff>(place + 24));
+    file.write(kFiller.data(), kFiller.size());
+    return file.flush().good();
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -125,6 +162,7 @@ void SoundFile::finish() {
   const int error = sf_close(std::exchange(impl_->file, nullptr));
   if (error != 0)
     throw std::runtime_error("cannot write '" + impl_->path + "': " + sf_error_number(error));
+  if (!make_plain(impl_->path)) throw std::runtime_error("cannot write '" + impl_->path + "'");
 }
 
 double SoundFile::rate_hz() const noexcept {

@@ -13,7 +13,8 @@ namespace cordis::cli {
 void add_table_files(Verb& verb, TableOptions& options, const std::string& rows) {
   verb.option("--csv", "FILE", options.csv_file, "Write a table; - for stdout");
   verb.option("--npz", "FILE", options.npz_file, "Write the table for NumPy");
-  verb.option("--wav", "FILE", options.wav_file, "Write the signals with `sound: true`");
+  verb.option("--wav", "FILE", options.wav_file,
+              "Write the signals with `sound: true`, as WAV of 32-bit floating point");
   verb.option("--events", "FILE", options.events_file,
               "Write the changes of state, comma-separated; - for stdout");
   verb.option("--every", "ROWS", options.every, rows);

@@ -226,6 +226,16 @@ std::size_t link_count_of(const scene::Scene& scene) noexcept {
          scene.network.maxwell_links.size();
 }
 
+std::vector<std::vector<std::uint32_t>> port_mats_of(const scene::Scene& scene) {
+  std::vector<std::vector<std::uint32_t>> mats;
+  for (const scene::Port& port : scene.ports) {
+    mats.emplace_back();
+    for (const scene::BodyMass& mass : port.body) mats.back().push_back(mass.mat);
+    if (port.body.empty()) mats.back().push_back(port.mat);
+  }
+  return mats;
+}
+
 FrameLayout layout_of(const scene::Scene& scene) {
   FrameLayout layout;
   layout.dimension = scene.space();

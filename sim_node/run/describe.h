@@ -25,4 +25,7 @@ std::vector<std::size_t> state_sets_of(const scene::Scene& scene);
 /// Where the MATs of a scene are shown.
 FrameLayout layout_of(const scene::Scene& scene);
 
+/// Per port the MATs that it moves: that at the port, or the masses of its body.
+std::vector<std::vector<std::uint32_t>> port_mats_of(const scene::Scene& scene);
+
 }  // namespace cordis::sim

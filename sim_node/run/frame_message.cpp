@@ -1,7 +1,6 @@
 // sim_node/run/frame_message.cpp
 #include "sim_node/run/frame_message.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -23,15 +22,10 @@ void put_bonds(const FrameBonds& bonds, msg::SceneFrame& frame) {
 /// Forces in the coordinates of a frame.
 void put_port_forces(const FrameShape& shape, const std::vector<double>& forces,
                      msg::SceneFrame& frame) {
-  constexpr std::array<double, 3> kNone{};
   frame.port_force_n().resize(forces.size());
   for (std::size_t port = 0; port < shape.port_mats.size(); ++port) {
     const std::uint32_t mat = shape.port_mats[port].front();
-    std::array<float, 3> from{};
-    std::array<float, 3> to{};
-    shape.layout.show(mat, kNone.data(), from.data());
-    shape.layout.show(mat, forces.data() + 3 * port, to.data());
-    for (std::size_t k = 0; k < 3; ++k) frame.port_force_n()[3 * port + k] = to[k] - from[k];
+    shape.layout.show_force(mat, forces.data() + 3 * port, frame.port_force_n().data() + 3 * port);
   }
 }
 

@@ -50,6 +50,15 @@ void FrameLayout::show(std::size_t mat, const double* position, float* shown) co
   }
 }
 
+void FrameLayout::show_force(std::size_t mat, const double* force, float* shown) const noexcept {
+  constexpr std::array<double, 3> kNone{};
+  std::array<float, 3> from{};
+  std::array<float, 3> to{};
+  show(mat, kNone.data(), from.data());
+  show(mat, force, to.data());
+  for (std::size_t k = 0; k < 3; ++k) shown[k] = to[k] - from[k];
+}
+
 FrameStore::FrameStore(FrameShape shape)
     : shape_(std::move(shape)),
       row_capacity_(shape_.rows_per_frame * kFramesOfRows),

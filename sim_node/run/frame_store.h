@@ -22,6 +22,8 @@ struct FrameLayout {
 
   /// Puts a MAT at its place in a frame. @param position  of the engine, 3 values
   void show(std::size_t mat, const double* position, float* shown) const noexcept;
+  /// A force on a MAT in the directions of a frame. @param force  of the engine, 3 values [N]
+  void show_force(std::size_t mat, const double* force, float* shown) const noexcept;
 };
 
 /// What is fixed about the frames of a scene.

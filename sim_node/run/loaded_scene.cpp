@@ -27,16 +27,6 @@ std::size_t max_bonds(const scene::Scene& scene, const std::vector<std::size_t>&
   return pairs;
 }
 
-std::vector<std::vector<std::uint32_t>> port_mats_of(const scene::Scene& scene) {
-  std::vector<std::vector<std::uint32_t>> mats;
-  for (const scene::Port& port : scene.ports) {
-    mats.emplace_back();
-    for (const scene::BodyMass& mass : port.body) mats.back().push_back(mass.mat);
-    if (port.body.empty()) mats.back().push_back(port.mat);
-  }
-  return mats;
-}
-
 FrameShape shape_of(const Simulation& simulation, std::uint64_t version) {
   const scene::Scene& scene = simulation.scene();
   const std::vector<std::size_t> state_sets = state_sets_of(scene);

@@ -32,6 +32,7 @@ using std::numbers::pi;
 struct WavData {
   std::uint32_t rate_hz = 0;
   std::uint16_t format = 0;
+  std::string chunks;  // names, in their order
   std::uint16_t channels = 0;
   std::vector<float> samples;
 };
@@ -51,10 +52,9 @@ WavData read_wav(const std::string& path) {
   for (std::size_t offset = 12; offset + 8 <= bytes.size();) {
     const std::string name = bytes.substr(offset, 4);
     const auto size = number_at<std::uint32_t>(bytes, offset + 4);
+    wav.chunks += name + " ";
     if (name == "fmt ") {
       wav.format = number_at<std::uint16_t>(bytes, offset + 8);
-      constexpr std::uint16_t kExtensible = 0xFFFE;
-      if (wav.format == kExtensible) wav.format = number_at<std::uint16_t>(bytes, offset + 32);
       wav.channels = number_at<std::uint16_t>(bytes, offset + 10);
       wav.rate_hz = number_at<std::uint32_t>(bytes, offset + 12);
     } else if (name == "data") {
@@ -165,6 +165,8 @@ TEST(SoundFile, KeepsItsChannelsApartAndScalesThem) {
   EXPECT_EQ(file.peak(), 2499.5);
   const WavData wav = read_wav(path);
   std::filesystem::remove(path);
+  EXPECT_EQ(wav.format, 3u) << "IEEE floating point, and not WAVE_FORMAT_EXTENSIBLE";
+  EXPECT_TRUE(wav.chunks.ends_with("fmt  JUNK fact data ")) << wav.chunks;
   ASSERT_EQ(wav.channels, 2u);
   ASSERT_EQ(wav.samples.size(), 10'000u);
   for (std::size_t i = 0; i < 5000; ++i) {

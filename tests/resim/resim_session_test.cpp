@@ -68,9 +68,10 @@ class RecordedSession {
     fs::copy_file(take_, fs::path(keep) / (name + ".mcap"), fs::copy_options::overwrite_existing);
   }
 
-  cli::ResimResult resim() const {
+  cli::ResimResult resim(const std::vector<std::string>& words = {}) const {
     cli::ResimOptions options;
     options.take = take_.string();
+    options.words = words;
     cli::ResimResult result = cli::resimulate(options);
     std::printf("%s", cli::text_of(result, options).c_str());
     return result;
@@ -128,6 +129,29 @@ TEST(ResimSession, PlasticineThatIsKneadedInRealtime) {
   expect_equal(result, static_cast<std::uint64_t>(2 * seconds));
   EXPECT_GE(result.played_s, seconds - 0.001);
   EXPECT_GT(result.samples, 100u);
+}
+
+/// The port follows its device, so another spring changes its force alone: 10 mm are 2 N of 200 N/m.
+TEST(ResimSession, AStifferSpringBehindADirectPortChangesForcesAlone) {
+  RecordedSession session("lockstep", sim_of("scene.yaml", ", duration_s: 1") +
+                                          "  keyboard: {node: device_node, device: key.yaml}\n");
+  session.live().add_file("scene.yaml", wall_scene(200.0));
+  session.live().add_file("key.yaml", std::string(kScriptedKey) + R"(    - {at_s: 0, m: 0}
+    - {at_s: 0.3, m: -0.01}
+)");
+  session.live().start("device_node", "keyboard");
+  session.live().start("sim_node", "sim");
+  session.wait();
+
+  const cli::ResimResult same = session.resim({"wall.stiffness_n_per_m=200"});
+  ASSERT_TRUE(same.findings.force);
+  EXPECT_EQ(same.findings.force->largest_n, 0.0);
+  const cli::ResimResult stiffer = session.resim({"wall.stiffness_n_per_m=300"});
+  EXPECT_EQ(stiffer.findings.largest->largest_m, 0.0);
+  ASSERT_TRUE(stiffer.findings.force);
+  EXPECT_EQ(stiffer.findings.force->port, "key");
+  EXPECT_NEAR(stiffer.findings.force->taken_n, 2.0, 1e-6);  // a frame has 24 bits
+  EXPECT_NEAR(stiffer.findings.force->now_n, 3.0, 1e-6);
 }
 
 class ResimRole : public ::testing::TestWithParam<const char*> {};

@@ -471,6 +471,37 @@ TEST(Resim, ComparesAnotherModelUnderTheSameHand) {
   EXPECT_EQ(resimulate(options).findings.largest->largest_m, 0.0);
 }
 
+TEST(Resim, NamesThePortWhoseForceIsFarthestFromThatOfAnotherModel) {
+  const mcap::TakeFolder folder;
+  ResimOptions options;
+  options.take = (folder / "forces.mcap").string();
+  int changes = 0;
+  copy_topic<msg::SceneFrame>(kGolden + "realtime_key.mcap", options.take, msg::TOPIC_FRAME,
+                              [&](msg::SceneFrame& frame) {
+                                if (frame.step() == 4000) {
+                                  frame.port_force_n() = {0.0F, 3e4F, 4e4F};  // no scene has it
+                                  ++changes;
+                                }
+                                return true;
+                              });
+  ASSERT_EQ(changes, 1);
+  EXPECT_FALSE(resimulate(options).findings.force) << "hashes say whether its own model is equal";
+  options.integrator = "cordis";
+
+  const ResimResult result = resimulate(options);
+
+  ASSERT_TRUE(result.findings.force);
+  EXPECT_EQ(result.findings.force->step, 4000u);
+  EXPECT_NEAR(result.findings.force->taken_n, 5e4, 1e-3);
+  EXPECT_NEAR(result.findings.force->largest_n, 5e4, result.findings.force->now_n + 1e-3);
+  const std::string text = text_of(result, options);
+  EXPECT_NE(text.find("no difference of positions\n"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find("at step 4000 (1 s): 5e+04 N, '" + result.findings.force->port + "', 5e+04 N"),
+      std::string::npos)
+      << text;
+}
+
 /// Writes the scene of a ball alone, and computes a golden take with it. @return why that is refused
 template <class Error>
 std::string refusal_of_ball(const std::filesystem::path& scene, const std::string& gesture_rate_hz,
