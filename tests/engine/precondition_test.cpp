@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/connected_components.h"
+#include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/idle_state.h"
 #include "sim_node/engine/integrators/modal_block.h"
 #include "sim_node/engine/laws/expression.h"
@@ -60,6 +61,11 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
   NetworkDescription with_set = small_network();
   PairFriction friction(with_set, smooth, 4, 4);
   PairBlock no_pairs(2);
+  double real = 0.0;
+  std::uint32_t whole = 0;
+  const auto is_below_two = [](std::uint32_t value) { return value < 2; };
+  const std::vector<double> half = {0.5};
+  const std::vector<double> two = {2.0};
   const double nowhere[4] = {test::kNan, 0.0, 0.0, 0.0};
 
   const std::vector<Misuse> misuses = {
@@ -89,6 +95,9 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"dt > 0", [&] { const StateTable bad({}, 0.0); }},
       {"has_content", [] { elastic_tension(Table(), {}); }},
       {"distance > 0", [&] { components.find_near(world.positions(), 0.0); }},
+      {"value_count", [&] { Archive::restoring({}).real(real); }},
+      {"is_exact", [&] { Archive::restoring(half).whole(whole, is_below_two); }},
+      {"fits", [&] { Archive::restoring(two).whole(whole, is_below_two); }},
       {"refusal_of", [&] { const ModalBlock block(plane); }},
   };
   for (const Misuse& misuse : misuses) {

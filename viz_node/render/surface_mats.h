@@ -8,13 +8,18 @@
 #include <vector>
 
 #include "idl/scene.h"
+#include "node/assert.h"
 
 namespace cordis::viz {
 
-/// The MAT of each surface; of an older take, which does not say it, that of its name. NO_INDEX where
-/// there is none. Precondition: the description is sound (fault_of).
+/// The MAT of each surface, NO_INDEX where there is none. An older take does not say it: there it is
+/// the MAT of its name. Precondition: `surface_mat` is empty, or has a MAT that exists for each surface.
 inline std::vector<std::uint32_t> mats_of_surfaces(const msg::SceneDescription& description) {
-  if (!description.surface_mat().empty()) return description.surface_mat();
+  if (!description.surface_mat().empty()) {
+    CORDIS_ASSERT(description.surface_mat().size() == description.surfaces().size());
+    CORDIS_ASSERT(std::ranges::max(description.surface_mat()) < description.mat_kind().size());
+    return description.surface_mat();
+  }
   std::map<std::string, std::uint32_t> known;  // of each name: a polyline has several
   std::vector<std::uint32_t> mats;
   for (const msg::SurfaceDescription& surface : description.surfaces()) {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/state_hash.h"
 
 namespace cordis::engine {
@@ -30,7 +31,7 @@ class Archive {
   static Archive checking(std::span<const double> row) {
     return {Task::kCheck, row, nullptr, nullptr};
   }
-  /// Restores. Precondition: the row has been checked.
+  /// Restores. Precondition: the row has been checked, and matches().
   static Archive restoring(std::span<const double> row) {
     return {Task::kRestore, row, nullptr, nullptr};
   }
@@ -63,6 +64,7 @@ class Archive {
     const std::span<const double> from = take(values.size());
     for (std::size_t i = 0; i < from.size(); ++i) {
       if (restores()) {
+        CORDIS_ASSERT(is_exact<Whole>(from[i]) && fits(i, static_cast<Whole>(from[i])));
         values[i] = static_cast<Whole>(from[i]);
       } else if (!is_exact<Whole>(from[i]) || !fits(i, static_cast<Whole>(from[i]))) {
         fits_ = false;
@@ -107,12 +109,13 @@ class Archive {
       const double* first = from + i * sizeof...(field);
       const double* next = first;
       if (restores()) {
+        CORDIS_ASSERT(are_exact<Field...>(first));
         ((records[i].*field = static_cast<Field>(*next++)), ...);
+        CORDIS_ASSERT(fits(i, records[i]));
         continue;
       }
       Record read;
-      fits_ = (is_exact<Field>(*next++) && ...);
-      next = first;
+      fits_ = are_exact<Field...>(first);
       if (fits_) ((read.*field = static_cast<Field>(*next++)), ...);
       fits_ = fits_ && fits(i, read);
     }
@@ -147,6 +150,7 @@ class Archive {
 
   /// The next values of the row; none when there are fewer.
   std::span<const double> take(std::size_t value_count) noexcept {
+    CORDIS_ASSERT(!restores() || value_count <= row_.size());
     if (value_count > row_.size()) {
       fits_ = false;
       row_ = {};
@@ -169,6 +173,12 @@ class Archive {
       return value >= 0.0 && value <= kMax &&
              value == static_cast<double>(static_cast<std::uint64_t>(value));
     }
+  }
+
+  /// True if the values at `next` are those of the types.
+  template <class... Values>
+  static bool are_exact(const double* next) noexcept {
+    return (is_exact<Values>(*next++) && ...);
   }
 
   template <class Value>

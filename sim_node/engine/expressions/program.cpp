@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "node/assert.h"
 #include "sim_node/engine/core/require.h"
@@ -150,6 +151,15 @@ void check_program(const Program& program, const std::string& name, std::size_t 
     require(depth <= kMaxStack, name + ": depth of the stack", "at most 16");
   }
   require(depth == 1, name, "an expression that leaves one value");
+}
+
+bool is_well_formed(const Program& program, std::size_t variable_count) {
+  try {
+    check_program(program, {}, variable_count);
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace cordis::engine

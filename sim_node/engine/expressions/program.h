@@ -23,6 +23,9 @@ struct Program {
 /// kMaxStack on the way, slots below kMaxSlots.
 void check_program(const Program& program, const std::string& name, std::size_t variable_count = 0);
 
+/// True if check_program has nothing against it. Allocates.
+bool is_well_formed(const Program& program, std::size_t variable_count = 0);
+
 /// How many values an operation takes from the stack.
 std::size_t operand_count(Operation operation) noexcept;
 /// True if it is kRising or kFalling, which compare with the step before.

@@ -23,14 +23,18 @@ bool is_known_to_laws(Quantity quantity) noexcept {
   }
 }
 
+bool is_known_to_laws(const Program& program) noexcept {
+  return std::ranges::all_of(program.code, [](const Instruction& instruction) {
+    return instruction.operation != Operation::kQuantity || is_known_to_laws(instruction.quantity);
+  });
+}
+
 void Expression::check(const std::string& name) const {
   const std::string what = name + ": expression";
   check_program(program, what);
   require(!has_edge(program), what, "one without rising and falling");
-  for (const Instruction& instruction : program.code) {
-    require(instruction.operation != Operation::kQuantity || is_known_to_laws(instruction.quantity),
-            what + ": quantity", "distance, elongation, speed, or the mass of an end");
-  }
+  require(is_known_to_laws(program), what + ": quantity",
+          "distance, elongation, speed, or the mass of an end");
 }
 
 double Expression::distance_of_no_potential(const LawPoint& link) const noexcept {

@@ -15,6 +15,8 @@ class ProgramLoop;  // expressions/program_kernel_body.h
 
 /// True when an expression of a law may ask for the quantity.
 bool is_known_to_laws(Quantity quantity) noexcept;
+/// True if a program asks for no other quantities than these.
+bool is_known_to_laws(const Program& program) noexcept;
 
 /// The tension is 0 where the value is not finite.
 struct Expression {

@@ -16,7 +16,10 @@ class Renumbering {
     for (std::size_t i = 0; i < gone.size(); ++i) before_[i + 1] = before_[i] + (gone[i] ? 0 : 1);
   }
 
-  void apply(std::uint32_t& index) const { index = before_[index]; }
+  void apply(std::uint32_t& index) const {
+    CORDIS_ASSERT(index < gone_.size() && !gone_[index]);
+    index = before_[index];
+  }
   void apply(std::vector<std::uint32_t>& indices) const {
     for (std::uint32_t& index : indices) apply(index);
   }
@@ -24,7 +27,7 @@ class Renumbering {
   template <class Range>
   void apply_to_range(Range& range) const {
     const std::uint32_t end = before_[range.first + range.count];
-    apply(range.first);
+    range.first = before_[range.first];
     range.count = end - range.first;
   }
   template <class Range>

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "node/assert.h"
+#include "sim_node/engine/laws/expression.h"
 
 namespace cordis::plan {
 namespace {
@@ -18,7 +19,8 @@ using engine::Operation;
 using engine::Quantity;
 
 constexpr Interval kAny = kAnyNumber;
-constexpr std::size_t kVariables = 2;  // distance, speed
+constexpr std::size_t kVariables = 2;                                           // distance, speed
+constexpr std::size_t kAnyVariables = std::numeric_limits<std::size_t>::max();  // of the network
 
 double size_of(const Interval& u) {
   return std::max(std::abs(u.low), std::abs(u.high));
@@ -476,6 +478,7 @@ bool has_step_along(Interval LinkBox::*variable, Interval LinkBox::*across,
 
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
   CORDIS_ASSERT(box.bisections > 0);
+  CORDIS_ASSERT(engine::is_well_formed(program) && engine::is_known_to_laws(program));
   const auto rise = [](const Interval& slope) { return std::max(0.0, slope.high); };
   const auto enough = [](double most, double reached) {
     return most <= (1.0 + kNearEnough) * std::max(0.0, reached);
@@ -485,6 +488,8 @@ SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& bo
 }
 
 bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox& within) {
+  CORDIS_ASSERT(engine::is_well_formed(program, kAnyVariables) &&
+                engine::is_known_to_laws(program));
   Evaluation whole(box);
   whole.enclose(program);
   if (!whole.is_undecided() || engine::asks_for_variable(program)) return false;
