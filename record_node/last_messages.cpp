@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "node/cdr.h"
+
 namespace cordis::record {
 namespace {
 
@@ -16,8 +18,9 @@ LastMessages search(const mcap::Reader& take, const mcap::MessageFilter& filter,
   if (filter.topics.empty()) return last;
   mcap::MessageCursor cursor = take.messages(filter);
   for (mcap::Message message; cursor.next(message);) {
-    std::uint32_t key = 0;  // behind the 4 bytes of encapsulation
-    for (std::size_t i = 4; has_keys && i < 8 && i < message.data.size(); ++i)
+    std::uint32_t key = 0;
+    const std::size_t end = std::min(kEncapsulationBytes + sizeof key, message.data.size());
+    for (std::size_t i = kEncapsulationBytes; has_keys && i < end; ++i)
       key = key << 8 | std::to_integer<std::uint32_t>(message.data[i]);
     auto& newest = last[{message.channel_id, key}];
     if (newest.size() >= depth) newest.pop_front();

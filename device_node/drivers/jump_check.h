@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device_node/axis.h"
+#include "node/hand_speed.h"
 
 namespace cordis::device {
 
@@ -10,7 +11,7 @@ namespace cordis::device {
 /// out, and a hand that has jumped is believed one sample later.
 class JumpCheck {
  public:
-  explicit JumpCheck(double rate_hz) noexcept : largest_step_m_(kFastest / rate_hz) {}
+  explicit JumpCheck(double rate_hz) noexcept : largest_step_m_(kFastestHand / rate_hz) {}
 
   void forget() noexcept;  ///< the next place is the first one, and believed
 
@@ -18,7 +19,6 @@ class JumpCheck {
   bool believes(const AxisValues& place_m) noexcept;
 
  private:
-  static constexpr double kFastest = 10.0;  // no hand moves a handle faster [m/s]
   bool is_near(const AxisValues& a, const AxisValues& b) const noexcept;
 
   double largest_step_m_;

@@ -122,9 +122,9 @@ class Participant {
   /// How often it has joined again.
   std::uint64_t rejoin_count() const noexcept;
 
-  /// Says in a sentence which process of the session cannot be received, or cannot receive, because
-  /// it speaks another version of the wire or was started with another launch file, or because the
-  /// two have not keys of one keyring; empty while there is none.
+  /// Says in a sentence which process of the session cannot be received, or cannot receive; empty
+  /// while there is none. It speaks another version of the wire, or was started with another launch
+  /// file, or has keys of another keyring.
   std::string mismatch() const;
 
   struct Impl;

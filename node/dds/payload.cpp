@@ -9,6 +9,7 @@
 #include <fastdds/rtps/common/SerializedPayload.h>
 
 #include "node/assert.h"
+#include "node/cdr.h"
 #include "node/dds/message_types.h"
 #include "node/dds/old_inputs.h"
 
@@ -67,8 +68,7 @@ bool decode_padded(Type& type, std::span<const std::byte> payload, std::size_t m
 
 template <class Message>
 bool decode(std::span<const std::byte> payload, Message& message) noexcept {
-  constexpr std::size_t kEncapsulation = 4;
-  if (payload.size() < kEncapsulation) return false;
+  if (payload.size() < kEncapsulationBytes) return false;
   if (std::is_same_v<Message, msg::SceneInputs> && payload.size() > kMaxInputs) return false;
   try {
     if constexpr (std::is_same_v<Message, msg::SceneInputs>) {

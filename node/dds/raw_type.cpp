@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "node/cdr.h"
+
 namespace cordis::dds {
 
 namespace rtps = eprosima::fastrtps::rtps;
@@ -11,7 +13,6 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
 constexpr std::uint32_t kUsualBytes = 512;  // room that a sample has before it has to grow
-constexpr std::size_t kEncapsulationBytes = 4;
 
 bool is_little_endian(const RawMessage& message) noexcept {
   return message.size() >= 2 && (message[1] & 1u) != 0;

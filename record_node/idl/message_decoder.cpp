@@ -7,12 +7,12 @@
 #include <cstring>
 #include <string>
 
+#include "node/cdr.h"
+
 namespace cordis::record {
 namespace {
 
 using Kind = MessageType::Kind;
-
-constexpr std::size_t kEncapsulationBytes = 4;
 
 /// Takes aligned numbers from the bytes of a message.
 class CdrReader {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "node/cdr.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/topic_glob.h"
 
@@ -27,10 +28,9 @@ bool says(const Channel& channel, const std::string& words) {
 
 /// What distinguishes the instances of a topic: its first field, the key where it has one.
 std::uint32_t instance_of(const Channel& channel, const Message& message) {
-  constexpr std::size_t kEncapsulation = 4;
   std::uint32_t key = 0;
-  if (says(channel, "keyed: true") && message.data.size() >= kEncapsulation + sizeof key)
-    std::memcpy(&key, message.data.data() + kEncapsulation, sizeof key);
+  if (says(channel, "keyed: true") && message.data.size() >= kEncapsulationBytes + sizeof key)
+    std::memcpy(&key, message.data.data() + kEncapsulationBytes, sizeof key);
   return key;
 }
 

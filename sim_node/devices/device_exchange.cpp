@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "node/assert.h"
+#include "node/hand_speed.h"
 #include "sim_node/checks/port_body.h"
 
 namespace cordis::sim {
@@ -112,7 +113,7 @@ void DeviceExchange::take_work(const msg::GestureForces& sample, const DeviceRea
                                std::uint64_t periods) noexcept {
   double max_n = 0.0;
   for (std::size_t axis = 0; axis < axis_count_; ++axis) max_n += reach.force_n[axis];
-  const double max_j = max_n * kFastest * static_cast<double>(periods) / rate_hz_;
+  const double max_j = max_n * kFastestHand * static_cast<double>(periods) / rate_hz_;
   const double given_j = sample.work_j() - hand_work_;
   new_work_ = new_work_ || !(std::abs(given_j) <= max_j);  // also what is no number
   echoed_answer_ = sample.answered_epoch() == epoch_ ? sample.answered_sample() : 0;

@@ -44,7 +44,6 @@ class DeviceExchange {
   static constexpr double kDisconnectedAfter = 0.02;  ///< [s]
   static constexpr double kRejoin = 0.1;              ///< [s]
   static constexpr double kRestart = 0.25;   ///< above the longest watchdog of a device [s]
-  static constexpr double kFastest = 10.0;   ///< largest speed of a hand that gives work [m/s]
   static constexpr double kDescribed = 1.0;  ///< [s]
 
   /// @param rate_hz  ticks per second

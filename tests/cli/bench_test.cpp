@@ -157,15 +157,16 @@ TEST(Bench, TheReportHasItsFigures) {
   CommandLine line("cordis", "", "1.2.3");
   add_bench_verb(line);
   const std::string help = line.reference();
-  const std::function<void(const nlohmann::json&)> look = [&](const nlohmann::json& part) {
-    for (const auto& [key, value] : part.items()) {
-      if (part.is_object()) {
-        EXPECT_NE(help.find(key), std::string::npos) << key;
-      }
-      if (value.is_structured()) look(value);
-    }
-  };
-  look(json);
+  const std::function<void(const nlohmann::json&)> expect_in_help =
+      [&](const nlohmann::json& part) {
+        for (const auto& [key, value] : part.items()) {
+          if (part.is_object()) {
+            EXPECT_NE(help.find(key), std::string::npos) << key;
+          }
+          if (value.is_structured()) expect_in_help(value);
+        }
+      };
+  expect_in_help(json);
 }
 
 TEST(Bench, WarnsOfAMachineThatWasNotQuiet) {

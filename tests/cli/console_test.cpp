@@ -28,7 +28,7 @@ struct Screen {
   Screen& operator=(const Screen&) = delete;
   int file() const { return ends[1]; }
   /// What was written since, without waiting for more.
-  std::string look() const {
+  std::string take_new_text() const {
     std::array<char, 65536> block{};
     const ssize_t count = read(ends[0], block.data(), block.size());
     return count > 0 ? std::string(block.data(), static_cast<std::size_t>(count)) : "";
@@ -45,8 +45,8 @@ TEST(Console, WritesWholeLinesToTheStreamTheyBelongTo) {
   Console console({out.file(), error.file()});
   console.line(Stream::kOut, "to out");
   console.line(Stream::kError, "to error");
-  EXPECT_EQ(out.look(), "to out\n");
-  EXPECT_EQ(error.look(), "to error\n");
+  EXPECT_EQ(out.take_new_text(), "to out\n");
+  EXPECT_EQ(error.take_new_text(), "to error\n");
 }
 
 TEST(Console, NeverWaitsForAReaderAndSaysHowManyLinesAreMissing) {
@@ -59,7 +59,7 @@ TEST(Console, NeverWaitsForAReaderAndSaysHowManyLinesAreMissing) {
     console.line(Stream::kOut, text);  // would hang here if it waited
 
   std::string seen;
-  for (std::string block = screen.look(); !block.empty(); block = screen.look()) {
+  for (std::string block = screen.take_new_text(); !block.empty(); block = screen.take_new_text()) {
     seen += block;
     console.flush();
   }
@@ -67,8 +67,9 @@ TEST(Console, NeverWaitsForAReaderAndSaysHowManyLinesAreMissing) {
   EXPECT_EQ(seen.size(), shown * (text.size() + 1));  // whole lines alone
   EXPECT_LT(shown, sent);
   console.line(Stream::kOut, "end");
-  EXPECT_EQ(screen.look(), "... " + std::to_string(sent - shown) +
-                               " lines are missing here: they were not read in time\nend\n");
+  EXPECT_EQ(screen.take_new_text(),
+            "... " + std::to_string(sent - shown) +
+                " lines are missing here: they were not read in time\nend\n");
 }
 
 TEST(Console, ForgetsAllWhenNobodyCanReadAnyMore) {
@@ -77,7 +78,7 @@ TEST(Console, ForgetsAllWhenNobodyCanReadAnyMore) {
   screen.hide();
   console.line(Stream::kOut, "unread");
   console.flush();
-  EXPECT_EQ(screen.look(), "");
+  EXPECT_EQ(screen.take_new_text(), "");
 }
 
 }  // namespace

@@ -70,12 +70,12 @@ TEST(Locks, AreNeverSharedByTheForceLoopAndAThreadOfNormalPriority) {
     const std::uint64_t until = status.of("keyboard").ticks() + ticks;
     EXPECT_TRUE(status.wait_for("keyboard", [&](const auto& now) { return now.ticks() >= until; }));
   };
-  const auto look = [&] {
+  const auto ask_for_counts = [&] {
     for (const ChildProcess* node : {&sim, &device}) node->signal(SIGUSR1);
   };
 
   run_on(1000);
-  look();
+  ask_for_counts();
   for (const char* words :
        {"pause", "resume", "reset"}) {  // each is reported, logged and described
     ChildProcess ctl({program_path("cordis"), "ctl", session.launch_file(), words});
@@ -84,7 +84,7 @@ TEST(Locks, AreNeverSharedByTheForceLoopAndAThreadOfNormalPriority) {
   }
   msg::SceneFrame frame;
   EXPECT_TRUE(eventually([&] { return frames.take(frame); })) << "frames are written meanwhile";
-  look();
+  ask_for_counts();
 
   for (const char* name : {"sim", "keyboard"}) {
     Locks locks;

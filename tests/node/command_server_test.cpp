@@ -25,7 +25,7 @@ msg::ControlCommand command_for(const std::string& target, std::uint64_t id,
   return command;
 }
 
-struct Desk {
+struct ServerOfSim {
   std::vector<msg::ControlVerb> executed;
   CommandServer server{"sim", msg::KIND_SIM_NODE, [this](const msg::ControlCommand& command) {
                          executed.push_back(command.verb());
@@ -34,7 +34,7 @@ struct Desk {
 };
 
 TEST(CommandServer, ExecutesWhatIsForItByNameByKindOrForAll) {
-  Desk server;
+  ServerOfSim server;
   std::uint64_t id = 0;
   for (const char* target : {"sim", "sim_node", "*"}) {
     const auto reply = server.server.take(command_for(target, ++id));
@@ -48,27 +48,27 @@ TEST(CommandServer, ExecutesWhatIsForItByNameByKindOrForAll) {
 }
 
 TEST(CommandServer, IsSilentAboutWhatIsForOthers) {
-  Desk server;
+  ServerOfSim server;
   for (const char* target : {"", "simulation", "keyboard", "device_node"})
     EXPECT_FALSE(server.server.take(command_for(target, 1)).has_value()) << target;
   EXPECT_TRUE(server.executed.empty());
 }
 
 TEST(CommandServer, ExecutesACommandOnceHoweverOftenItComes) {
-  Desk server;
+  ServerOfSim server;
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(server.server.take(command_for("sim", 7))->text(), "answer 1");
   EXPECT_EQ(server.executed.size(), 1u);
 }
 
 TEST(CommandServer, DistinguishesSendersThatUseTheSameNumber) {
-  Desk server;
+  ServerOfSim server;
   static_cast<void>(server.server.take(command_for("sim", 7, "one")));
   EXPECT_EQ(server.server.take(command_for("sim", 7, "other"))->text(), "answer 2");
 }
 
 TEST(CommandServer, RemembersABoundedNumberOfCommands) {
-  Desk server;
+  ServerOfSim server;
   for (std::uint64_t id = 0; id <= CommandServer::kRemembered; ++id)
     static_cast<void>(server.server.take(command_for("sim", id)));
   const std::size_t before = server.executed.size();
