@@ -24,14 +24,14 @@ namespace cordis::device {
 /// for that to the very sample; then the guard does what it does without one. A position that comes
 /// later waits for the next period. Of other drivers a period is step() with the newest answer, and then send_sample().
 ///
-/// Between the axes and the wire stands the end-effector map of the device; the guard stands behind it, at
-/// the motors. In lockstep `delay_periods` of the device lets every answer be felt so much later,
-/// as over a slow wire, and samples echo what is felt; the age of what goes to the guard is counted
-/// in samples, and nothing depends on wall time. Otherwise the age counts from the moment the
-/// answered sample was sent, so that a scene that no longer receives this device counts as silent.
-/// A loop that has itself stalled for 18 ms, or nearly two periods, restarts whatever the watchdog,
-/// and so after a sleep of the machine, in which nothing ages: by then a device may have let go on
-/// its own (docs/kfb1.md).
+/// Between the axes and the wire stands the end-effector map of the device; the guard stands behind
+/// it, at the motors. In lockstep `delay_periods` of the device lets every answer reach the motors
+/// so much later, as over a slow wire. Samples echo what has reached them. The age of what goes to
+/// the guard is counted in samples, and nothing depends on wall time. Otherwise the age counts from
+/// the moment the answered sample was sent, so that a scene that no longer receives this device
+/// counts as silent. A loop that has itself stalled for 18 ms, or nearly two periods, restarts
+/// whatever the watchdog. It also does after a sleep of the machine, in which nothing ages. By then
+/// a device may have let go on its own (docs/kfb1.md).
 class Exchange {
  public:
   using ClockFunction = StallWatch::ClockFunction;  ///< CLOCK_MONOTONIC [ns]
@@ -100,10 +100,10 @@ class Exchange {
   /// In lockstep, when await_answer() has been in vain: motors off, if there are any.
   void let_go() noexcept;
 
-  /// Motors, one period, sensors. Sets the phase of the meter: waiting until the first answer,
-  /// running while answers come, standby while they go to another node, lost when they are older
-  /// than the watchdog or the driver has no device, disconnected when its motors have been let go
-  /// of outside this loop.
+  /// Motors, one period, sensors. Sets the phase of the meter. It is waiting until the first
+  /// answer, running while answers come, and standby while they go to another node. It is lost when
+  /// they are older than the watchdog, or the driver has no device. It is disconnected when the
+  /// motors have been let go of outside this loop.
   void step() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< true if the driver has one
@@ -114,8 +114,8 @@ class Exchange {
   bool has_motors() const noexcept { return driver_.has_motors(); }
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
-  /// taken any more, and with every step() the last answer fades as an old one does, over
-  /// limit / slew; but not for longer than 0.5 s, for a stop is a stop.
+  /// taken any more. With every step() the last answer fades as an old one does, over limit / slew.
+  /// That lasts no longer than 0.5 s, for a stop is a stop.
   void leave() noexcept;
   bool has_left() const noexcept {
     return leaving_age_s_ >= config_.force_guard.watchdog_s || leaving_s_ >= kLongestLeave;

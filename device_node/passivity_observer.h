@@ -24,16 +24,16 @@ struct PassivitySettings {
 /// A force held over a period gives the hand exactly f[n] (x[n+1] - x[n]); of that the viscosity b
 /// of the device takes at least b (x[n+1] - x[n])^2 / T. A force that changes from f0 to f1 at the
 /// part s of the period counts as its mean, s f0 + (1 - s) f1: the motion between two samples is
-/// taken as straight. What that leaves out is at most |f1 - f0| s (1 - s) / 2 times the bend
-/// T^2 |x''|; it has no mean for motions slower than half the rate of the samples, and of what a
-/// hand does at that rate itself no observer of samples knows. The sum of the differences,
+/// taken as straight. What that leaves out is at most |f1 - f0| s (1 - s) / 2 times the bend T^2
+/// |x''|. It has no mean for motions slower than half the rate of the samples. No observer of
+/// samples knows what a hand does at that rate itself. The sum of the differences,
 ///     W = sum of f dx - b dx^2 / T  over all axes,
-/// never rises above 0 when scene and delay together are passive for every hand, that is, in the
-/// linear case, up to K = b / (T/2 + d T). A loop whose W has exceeded the budget makes energy, and
-/// from then on, until the forces restart, it is held to a stricter account: C = sum of f dx
-/// alone, so that the viscosity of the device is left to calm the motion. While C is above 0 the
-/// motors act as a damper a = C T / sum of dx^2, but not beyond a = m / (2 T): an uncapped one
-/// shakes the hand itself. Source: Hannaford and Ryu 2002; cap and second account by experiment.
+/// never rises above 0 when scene and delay together are passive for every hand. In the linear case
+/// that holds up to K = b / (T/2 + d T). A loop whose W has exceeded the budget makes energy, and
+/// from then on, until the forces restart, it is held to a stricter account: C = sum of f dx alone,
+/// so that the viscosity of the device is left to calm the motion. While C is above 0 the motors
+/// act as a damper a = C T / sum of dx^2, but not beyond a = m / (2 T): an uncapped one shakes the
+/// hand itself. Source: Hannaford and Ryu 2002; cap and second account by experiment.
 ///
 /// Two things would be taken for energy made from nothing, and are not. While forces are ramped up,
 /// the growing share s of a force f may store up to ds |f| travel, which is added to the budget.

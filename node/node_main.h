@@ -45,9 +45,9 @@ struct NodeStart {
 };
 
 /// Reads `LAUNCH.yaml --name NAME [--check] [name.key=value ...]`, installs log and stop signals,
-/// joins the running session of that name or locks a domain for it (SessionRegistration), calls
-/// `run` and turns whatever it throws into one clear message: exit code 2 for a bad file or
-/// usage, 1 for a failure at run time.
+/// and joins the running session of that name or locks a domain for it (SessionRegistration). Then
+/// it calls `run`, and turns whatever that throws into one clear message. The exit code is 2 for a
+/// bad file or usage, 1 for a failure at run time.
 /// @param kind  name of the program
 /// @param run   does the node's work and returns its exit code; ConfigError and std::exception may
 /// leave it

@@ -9,10 +9,10 @@
 
 namespace cordis::cli {
 
-/// Starts the nodes of the plan in the domain of the registration, shows their lines and the
-/// address of the page, starts those again that die, stops all of them when one that is required
-/// ends for good, when the duration is over or when a signal says so, and prints the table of their
-/// last statuses.
+/// Starts the nodes of the plan in the domain of the registration. It shows their lines and the
+/// address of the page, and starts those again that die. It stops all of them when one that is
+/// required ends for good, when the duration is over, or when a signal says so. At the end it
+/// prints the table of their last statuses.
 /// @return kSuccess, or the exit code of the first required node that failed for good (128 + signal
 /// when one killed it); when all nodes end by themselves, of the first that failed
 /// @throws std::runtime_error when DDS refuses, a program cannot be started or a log cannot be

@@ -47,10 +47,11 @@ class StatusBoard {
   std::map<std::string, msg::NodeStatus> newest_;
 };
 
-/// A line per node in the order of `nodes`: rate reached, overruns, latency, energy drift, late
-/// ticks by their cause and those without an answer of the other side; then, of a simulation, its
-/// running account and its state as `state hash 0123456789abcdef after N steps`; of a device what
-/// its hand was given; of a node that failed its reason. Ends with a newline.
+/// A line per node in the order of `nodes`. It has the rate reached, overruns, latency, energy
+/// drift, late ticks by their cause, and those without an answer of the other side. Lines of a
+/// simulation follow: its running account, and its state as `state hash 0123456789abcdef after N
+/// steps`. Of a device there is what its hand was given, of a node that failed the reason. The text
+/// ends with a newline.
 std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board);
 
 }  // namespace cordis::cli

@@ -24,9 +24,10 @@ struct HaplySettings {
 /// the board: mask of motor ports and a direction for each; the same for encoders; no sensors; no
 /// pulses; offset and counts per turn of each encoder. Type 2 carries the torques [N m], in the
 /// order of the ports, and is answered by the device id and one angle [degrees] per encoder, in the
-/// same order. No checksum: an answer that is not finite, of more than two turns, or that no pose
-/// of the arms has, is refused; so is a byte that is not the device id where it should stand; and a
-/// place that no hand reaches in a period is not believed before a second answer says the same.
+/// same order. There is no checksum. An answer is refused that is not finite, has more than two
+/// turns, or fits no pose of the arms. So is a byte that stands in the place of the device id and
+/// is another. A place that no hand reaches in a period is not believed before a second answer says
+/// the same.
 ///
 /// Axis 0 is x to the right, axis 1 is y away from the bases.
 class Haply final : public Hardware {

@@ -40,9 +40,10 @@ struct HardwareSettings {
 /// A board that says that it has let go of its motors is given no force until it has not said so
 /// for 0.1 s; so is one whose forces the guardian has taken away. Meanwhile write() returns false.
 ///
-/// Role mass: as it is. Role liaison, for devices without a sensor of force: the motors pull the
-/// handle to the commanded place by a coupling, F = K (x - x_h) + Z (v - v_h), through a guard of
-/// the same limits, ramp and watchdog as in role mass, and -F is what the hand is said to give.
+/// In role mass the device plays as it is. Role liaison is for devices without a sensor of force.
+/// There the motors pull the handle to the commanded place by a coupling, F = K (x - x_h) + Z (v -
+/// v_h). A guard has the same limits, ramp and watchdog as in role mass. The force of the hand is
+/// taken to be -F.
 class Hardware : public Driver {
  public:
   Hardware(std::unique_ptr<Wire> wire, const HardwareSettings& settings, const AxisLayout& layout);

@@ -9,10 +9,11 @@
 namespace cordis::device {
 
 /// KFB1: COBS frames with a checksum; each FORCE is answered by one STATE with its number. The
-/// driver asks what the device is, refuses one with another number of keys, says in the log where
-/// its travel or its force is not that of the device file, and sends it the rate and the largest
-/// force of the device file; again after a restart of the board, which its time shows. EVENTs are
-/// logged; at an emergency stop, an overheated motor or its watchdog the board has let go.
+/// driver asks what the device is, and refuses one with another number of keys. The log says where
+/// its travel or its force is not that of the device file. The driver then sends the rate and the
+/// largest force of the device file. It does so again after a restart of the board, which its time
+/// shows. EVENTs are logged; at an emergency stop, an overheated motor or its watchdog the board
+/// has let go.
 class Kfb1 final : public Hardware {
  public:
   using Hardware::Hardware;

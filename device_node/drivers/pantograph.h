@@ -5,8 +5,8 @@
 
 namespace cordis::device {
 
-/// A pen that two motors hold by two arms each: from the bases at (-base/2, 0) and (base/2, 0)
-/// inner arms at the angles of the motors, from their ends outer arms that meet in the pen, on the
+/// A pen that two motors hold by two arms each. Inner arms go from the bases at (-base/2, 0) and
+/// (base/2, 0), at the angles of the motors. From their ends outer arms meet in the pen, on the
 /// side away from the bases. Motor 0 is the one on the left. Angles count from x,
 /// counter-clockwise.
 struct Pantograph {

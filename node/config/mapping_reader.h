@@ -14,11 +14,11 @@
 namespace cordis::config {
 
 /// Reads the keys of one mapping. Every call adds a problem when the key is missing, of the wrong
-/// kind, not finite or out of range, and then returns the fallback (of a required key: a value
-/// inside the range, an empty text, the first choice), so that reading goes on and all errors are
-/// found at once. Scalars must be written plainly: a number for a number, true or false for a truth
-/// value. A value that is no mapping is one problem; one that does not exist is none (whoever
-/// fetched it has spoken): then every key counts as absent and no key as missing.
+/// kind, not finite or out of range. It then returns the fallback, so that reading goes on and all
+/// errors are found at once. The fallback of a required key is a value inside the range, an empty
+/// text, or the first choice. Scalars must be written plainly: a number for a number, true or false
+/// for a truth value. A value that is no mapping is one problem; one that does not exist is none
+/// (whoever fetched it has spoken): then every key counts as absent and no key as missing.
 class MappingReader {
  public:
   /// @param what  what the mapping is, for messages: "port 'left'", "scene".

@@ -10,11 +10,11 @@
 namespace cordis::sim {
 
 /// Keeps the largest K' + 2 Z' that the scene has had, over the liaisons in the states they were
-/// in: that of one mass by itself, and for masses on each other the largest eigenvalue of M^-1
-/// (dt^2 K + 2 dt Z), bounded from above by the rows of plan::row_weights as in `cordis check`.
-/// Below 4 nothing diverges; what viscosities count for in the limit of the other integrators is in
-/// it (plan::LimitWeights). Liaisons count with the largest slopes of their states; a member of a
-/// set with as many partners as plan::partner_bounds() says, or as it has where these are more.
+/// in. For masses on each other it is the largest eigenvalue of M^-1 (dt^2 K + 2 dt Z). The rows of
+/// plan::row_weights bound that from above, as in `cordis check`. Below 4 nothing diverges. It has
+/// what viscosities count for in the limit of the other integrators (plan::LimitWeights). Liaisons
+/// count with the largest slopes of their states; a member of a set with as many partners as
+/// plan::partner_bounds() says, or as it has where these are more.
 class LimitWatch {
  public:
   explicit LimitWatch(const engine::NetworkDescription& network);

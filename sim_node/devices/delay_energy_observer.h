@@ -9,12 +9,12 @@ namespace cordis::sim {
 /// One account for all the devices of role liaison of a scene.
 ///
 /// The forces f of a hand bring E = sum of f . (x(n+1) - x(n-1)) / 2 into the scene. The hand has
-/// given W, which its samples report for the same positions, some periods later. The difference
-/// M = E - W is energy from nowhere: a hand of stiffness k that is d periods T late makes k d T v^2
-/// in every moment. The scene takes D, as its own account says, wherever, in whatever state and by
-/// whatever law its liaisons do. While a loop comes to rest, M is below D; when it swings for
-/// ever, M is D, but for what W says too much where a force bends between two samples, as that of a
-/// saturated motor does; when it swings up, M is above. So
+/// given W, which its samples report for the same positions, some periods later. The difference M =
+/// E - W is energy from nowhere: a hand of stiffness k that is d periods T late makes k d T v^2 in
+/// every moment. The scene takes D, as its own account says, wherever, in whatever state and by
+/// whatever law its liaisons do. While a loop comes to rest, M is below D. When it swings up, M is
+/// above. When it swings for ever, M is D, but for what W says too much. That is where a force
+/// bends between two samples, as that of a saturated motor does. So
 ///
 ///     A = sum of M + |f(n) - 2 f(n-1) + f(n-2)| |dx| / 8 over the devices - 0.98 D
 ///

@@ -19,9 +19,9 @@ namespace cordis::sim {
 ///
 /// u being the way along the axis. A share of 1 stops the mass in one step. It is at most kShare,
 /// and less where links of the port leave less of the limit of the step. A mass that comes with the
-/// speed v and is pressed with F goes beyond the end by less than v dt / 2 + 2 F dt^2 / (m share)
-/// at kShare, by up to 4 v dt in place of v dt / 2 at the least share,
-/// and rests at F dt^2 / (m share).
+/// speed v and is pressed with F rests at F dt^2 / (m share) beyond the end. At kShare it goes
+/// beyond by less than v dt / 2 + 2 F dt^2 / (m share). At the least share the first term is up to
+/// 4 v dt.
 ///
 /// A mass beyond an end whose place was not known is led back with kReturn.
 class TravelStops {

@@ -11,20 +11,20 @@ namespace cordis::engine {
 /// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
 ///
-/// For linear links in 1 dimension, elastic is the product that the scheme keeps,
-/// K e(n) e(n-1) / 2, which changes by exactly the work of the springs. Of all other links, elastic
-/// is what they stored at first, and the exact works of their elastic forces and the energies of
-/// their changes of state since. So no residual is left but rounding, for every law and every step
-/// that is stable; and what the links should store by the closed forms of their laws differs from
-/// elastic by elastic_error, which shows what finite steps have done to them.
-/// A port that has moved counts up to its present position, and rests there until the next step.
+/// For linear links in 1 dimension, elastic is the product that the scheme keeps, K e(n) e(n-1) /
+/// 2, which changes by exactly the work of the springs. Of all other links, elastic is what they
+/// stored at first, and the exact works of their elastic forces and the energies of their changes
+/// of state since. So no residual is left but rounding, for every law and every step that is
+/// stable. By the closed forms of their laws the links should store another energy. The difference
+/// is elastic_error, which shows what finite steps have done to them. A port that has moved counts
+/// up to its present position, and rests there until the next step.
 ///
 /// The products with which this scheme keeps its account stay constant even where a motion diverges;
 /// kinetic_excess distinguishes the kinetic energy at x(n) from them.
 ///
-/// All of this is so for IntegratorKind::kCordis. The others keep the account at the moment of the last
-/// forces, with all energies in closed form and the works of viscosity at that moment: then the
-/// residual is what finite steps have done, and elastic_error and kinetic_excess are 0.
+/// All of this is so for IntegratorKind::kCordis. The others keep the account at the moment of the
+/// last forces, with all energies in closed form and the works of viscosity at that moment. Then
+/// the residual is what finite steps have done, and elastic_error and kinetic_excess are 0.
 struct Energy {
   double kinetic = 0.0;  ///< from the half-step velocity (x(n) - x(n-1)) / dt before the present
                          ///< position

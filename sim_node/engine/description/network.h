@@ -105,10 +105,10 @@ struct Bend {
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
 /// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has
 /// no sign in 1 dimension either, and there is no force while it is 0. With states, each pair has
-/// one of its own: it begins in that of the start, keeps its state while it is in range, and beyond
-/// it as long as it is bound, that is in another state than that of the start. The set P may be
-/// surfaces, all of it, beside a set Q: then the distance of a pair is that of SurfaceDistance, and
-/// there is a force at 0 too. [Luc90 III.2.3 a formalism for inter-connection]
+/// one of its own, and begins in that of the start. A pair keeps its state while it is in range,
+/// and beyond it while it is bound. It is bound in any other state than that of the start. The set
+/// P may be surfaces, all of it, beside a set Q: then the distance of a pair is that of
+/// SurfaceDistance, and there is a force at 0 too. [Luc90 III.2.3 a formalism for inter-connection]
 struct SetLiaison {
   std::uint32_t state_machine = 0;   ///< index in NetworkDescription::state_machines
   std::vector<std::uint32_t> set_p;  ///< MATs, each once; or surfaces

@@ -9,10 +9,10 @@
 
 namespace cordis::engine {
 
-/// All masses by the modes of a ModalBlock, exactly and at any step; what is not linear, and what
-/// is tied to a port, pushes them: the forces of state links, sets, Maxwell elements, links to
-/// ports and from outside are computed as `cordis` does and held for the step. Only the MATs they
-/// act on are found in each step; all others when they are asked for. Such a force must not be
+/// Moves all masses by the modes of a ModalBlock, exactly and at any step. What is not linear, and
+/// what is tied to a port, pushes them. The forces of state links, sets, Maxwell elements, links to
+/// ports and from outside are computed as `cordis` does. They are held for the step. Only the MATs
+/// they act on are found in each step; all others when they are asked for. Such a force must not be
 /// stiffer than ModalBlock::max_stiffness.
 ///
 /// World::link_force knows nothing of the links in the block. The account is that of `cordis`, and

@@ -14,9 +14,9 @@ namespace cordis::engine {
 class ImplicitDamping;
 struct WorldState;
 
-/// For each state link of a network the largest step [s] at which `leapfrog` feeds its viscosity an
-/// extrapolated velocity: dt (W_a + W_b) is kMaxExtrapolatedViscosity there, W the sum over the
-/// state links of an end of their steepest viscosities, over its mass. 0 where a law is steeper
+/// For each state link of a network, the largest step [s] at which `leapfrog` feeds its viscosity
+/// an extrapolated velocity. There dt (W_a + W_b) is kMaxExtrapolatedViscosity. W is the sum of the
+/// steepest viscosities over the state links of an end, over its mass. 0 where a law is steeper
 /// than any number (dry friction, a root of the speed); infinite without viscosity. A power above 1
 /// is taken at 1 m/s, a free expression at its steepest between -1 and 1 m/s.
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network);

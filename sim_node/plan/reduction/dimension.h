@@ -7,9 +7,10 @@
 
 namespace cordis::plan {
 
-/// Computes a scene in 2 dimensions, or in 1, when all its MATs lie and begin to move in a plane or
-/// on a line along the axes, and gravity and ports act in it: then no force ever leads out of it.
-/// Exact: what is left out stays 0. Scene::subspace reports where it is shown.
+/// Computes a scene in 2 dimensions, or in 1, when all its MATs stay in a plane or on a line along
+/// the axes. They do when they lie and begin to move in it, and gravity and ports act in it. Then
+/// no force ever leads out of it. Exact: what is left out stays 0. Scene::subspace reports where it
+/// is shown.
 ///
 /// In 1 dimension the links of a line have a sign, and ends pass each other; so on a line every
 /// link must have no rest length or no stiffness, and none states, nor a signal. Conditions on a

@@ -71,9 +71,9 @@ double stable_port_viscosity(const PortDevice& device, const PortLoop& loop);
 /// Role mass. The stiffness [N/m] of a wall K + B (1 - 1/z) / T before which the device alone does
 /// not swing; 0 when the viscosity B of the wall alone makes it swing.
 ///
-/// On the boundary a root of 1 + (K + B (1 - 1/z)/T) G_d(z) lies on the unit circle, G_d being the
-/// mass under a force that is held over a period and d periods late (the modified z-transform): K
-/// is the least real positive value of -1 / G_d(z) - B (1 - 1/z)/T there. Cost: up to 2 ms.
+/// On the boundary a root of 1 + (K + B (1 - 1/z)/T) G_d(z) lies on the unit circle. There G_d is
+/// the mass under a force that is held over a period and d periods late (the modified z-transform).
+/// K is the least real positive value of -1 / G_d(z) - B (1 - 1/z)/T there. Cost: up to 2 ms.
 double stable_port_stiffness(const PortDevice& device, double port_viscosity, const PortLoop& loop);
 
 /// Role liaison. The stiffness [N/m] that a hand may add to a port of this mass: (viscosity of the

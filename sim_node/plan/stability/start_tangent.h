@@ -11,11 +11,12 @@
 
 namespace cordis::plan {
 
-/// The linear network that a scene is for small movements about the pose of its start: every link
-/// with its tangent there, state links and every pair of a set in the state of their start as far as
-/// they pull or push there; with the weights of its integrator at its step
-/// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out. The ends of a law that
-/// has a step at the start, such as dry friction, count as held: small movements may not begin there.
+/// The linear network that a scene is for small movements about the pose of its start. It has every
+/// link with its tangent there. State links and the pairs of a set count in the state of their
+/// start, as far as they pull or push there. The weights are those of its integrator at its step
+/// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out. The ends of a law
+/// that has a step at the start, such as dry friction, count as held: small movements may not begin
+/// there.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {
