@@ -17,8 +17,9 @@ std::future<Result> start_background_work(std::function<Result()> work);
 /// True while the thread of some work lives.
 bool background_work_is_under_way() noexcept;
 
-/// Ends the process with an exit code: as return from main does, or, while background work is under
-/// way, at once after the log is written, for that work may use what a return from main destroys.
+/// Ends the process with an exit code, as return from main does. While background work is under way
+/// it ends at once after the log is written, for that work may use what a return from main
+/// destroys.
 [[nodiscard]] int leave_with(int exit_code);
 
 namespace detail {

@@ -72,10 +72,10 @@ class SessionRuns : public std::runtime_error {
 class SessionRegistration {
  public:
   /// @throws std::runtime_error when a node of the same name runs in the session already, when the
-  /// session speaks through another address of this host or is secured and the request is not, or the
-  /// other way round, when sessions of this name run in several
-  /// domains and the request names none, when no domain is free, when the folder cannot be used, or
-  /// as `simulates` says. SessionRuns as `is_player` says.
+  /// session speaks through another address of this host or is secured and the request is not, or
+  /// the other way round, when sessions of this name run in several domains and the request names
+  /// none, when no domain is free, when the folder cannot be used, or as `simulates` says.
+  /// SessionRuns as `is_player` says.
   SessionRegistration(std::filesystem::path folder, const SessionRequest& request);
   ~SessionRegistration();
   SessionRegistration(const SessionRegistration&) = delete;

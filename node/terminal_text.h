@@ -7,9 +7,9 @@
 
 namespace cordis::node {
 
-/// The text with '?' in place of what acts on a terminal: control characters but newline and
-/// tab (ESC, CR, the C1 set of U+0080 to U+009F), marks that turn the direction of text, and bytes
-/// that are no UTF-8.
+/// The text with '?' in place of what acts on a terminal. These are control characters but newline
+/// and tab (ESC, CR, the C1 set of U+0080 to U+009F). They are also marks that turn the direction
+/// of text, and bytes that are no UTF-8.
 std::string terminal_text(std::string_view text);
 
 /// terminal_text() with '?' in place of newlines and tabs as well: one line.

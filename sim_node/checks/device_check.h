@@ -26,7 +26,7 @@ int delay_periods_of(config::Clock clock) noexcept;
 
 /// Holds every port of the scene against every node that may play its device: axes, rate, travel,
 /// and how stiff a port the device supports. A port that is too stiff for an answer a period late,
-/// and not for a faster one, is a warning in real time: until the answers are measured to be fast
+/// and not for a faster one, is a warning in real time. Until the answers are measured to be fast
 /// enough the device is given no force. A node whose device file has faults reports them itself.
 /// @return the others, port by port, in the order of the launch file
 std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,

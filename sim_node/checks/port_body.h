@@ -10,11 +10,11 @@ namespace cordis::sim {
 /// Mass of the MAT, or of the body [kg]; 0 of a MAT that the device holds itself.
 double mass_of(const scene::Scene& scene, const scene::Port& port);
 
-/// What hangs on a port, at most or at least, as of plan::port_load(). Of a body: the viscosity is what
-/// damps its centre, that of liaisons to what does not belong to it, and of the medium: at least, what no motion
-/// within the body escapes, 0 where a mass has none itself. The stiffness is
-/// so large that no mass of the body comes nearer to the limit of the step than the body seems to: a
-/// spring at the centre of mass is never stiffer than one of its share at each mass.
+/// What hangs on a port, at most or at least, as of plan::port_load(). Of a body: the viscosity is
+/// what damps its centre, that of liaisons to what does not belong to it, and of the medium: at
+/// least, what no motion within the body escapes, 0 where a mass has none itself. The stiffness is
+/// so large that no mass of the body comes nearer to the limit of the step than the body seems to.
+/// A spring at the centre of mass is never stiffer than one of its share at each mass.
 plan::PortLoad max_load_of(const plan::LiaisonGraph& graph, const scene::Scene& scene,
                            const scene::Port& port);
 plan::PortLoad min_load_of(const plan::LiaisonGraph& graph, const scene::Scene& scene,

@@ -53,10 +53,10 @@ class AnswerDelayHistogram {
 /// The measured delays of all devices of a session. A sample says how old the newest answer was
 /// when it went to the motors. Samples without a new answer leave the force of the answer before on
 /// the motors: a period more counts for each of them, until the force is kGivenUp old and the
-/// device has taken it off. A sample that is lost on its way counts as one that was a period younger
-/// than the next, unless the force was off by then: a process that stalls for a while loses
-/// many samples and delays one answer. No report is believed that is shorter than the time in which this process had the
-/// sample before it answered it: that is measured here.
+/// device has taken it off. A sample that is lost on its way counts as one that was a period
+/// younger than the next, unless the force was off by then. A process that stalls for a while loses
+/// many samples and delays one answer. No report is believed that is shorter than the time in which
+/// this process had the sample before it answered it: that is measured here.
 class AnswerDelays {
  public:
   static constexpr std::size_t kMaxProcesses = 64;  ///< measured at once
@@ -130,7 +130,7 @@ class AnswerDelays {
 /// The delay that counts for the limits of a device. Until it is measured that is one period, or
 /// what is given. It follows the measured delay up at once, a tenth beyond it, and down only when
 /// that has been well below for kCalm: limits do not flap. A delay that is measured to be what was
-/// assumed counts as it is: the answers of a board wait for the end of their period, and a scene
+/// assumed counts as it is. The answers of a board wait for the end of their period, and a scene
 /// that was accepted for that is not refused by the tenth.
 class DelayInUse {
  public:

@@ -26,15 +26,16 @@ constexpr std::size_t kMaxAxes = msg::MAX_AXES;
 /// The ports of one device: takes its samples, moves or pushes the MATs over the sub-steps, and
 /// makes the answers.
 ///
-/// A new position is reached in a ramp over one period, and the answer holds the forces of its last
-/// sub-step, computed at the position of the sample itself: no virtual damping is lost, and no delay
-/// added. When the period ends between two sub-steps, that position is short of the sample by the
-/// part of the ramp that is left, and the next sub-step is on the next ramp. A device that is silent for kDisconnectedAfter is disconnected: its MATs hold
-/// still, its forces count as 0, and it is given none. When it is received again, or another
-/// process is received in its place, that takes over gradually, within kRejoin, and so do the
-/// forces it is given: neither side jumps. Both are counted in ticks. Likewise after a gap as long
-/// in its samples, when the scene itself stalled; one that is always late plays what comes. Real
-/// time: every function but the constructor is O(axes), allocates nothing and does not throw.
+/// A new position is reached in a ramp over one period. The answer holds the forces of its last
+/// sub-step, computed at the position of the sample itself. No virtual damping is lost, and no
+/// delay added. When the period ends between two sub-steps, that position is short of the sample by
+/// the part of the ramp that is left, and the next sub-step is on the next ramp. A device that is
+/// silent for kDisconnectedAfter is disconnected: its MATs hold still, its forces count as 0, and
+/// it is given none. When it is received again, or another process is received in its place, that
+/// takes over gradually, within kRejoin, and so do the forces it is given: neither side jumps. Both
+/// are counted in ticks. Likewise after a gap as long in its samples, when the scene itself
+/// stalled; one that is always late plays what comes. Real time: every function but the constructor
+/// is O(axes), allocates nothing and does not throw.
 ///
 /// Whoever takes part in the session may write a sample, so no number of it is trusted. Positions
 /// and forces stay within the reach of the device. When its SampleSequence restarts, the samples of

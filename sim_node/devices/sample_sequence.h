@@ -7,7 +7,7 @@ namespace cordis::sim {
 
 /// Follows the numbers of the samples of one device, and counts the samples that never came. A lost
 /// sample shows as a gap before the next one. Whoever takes part in the session may write a sample,
-/// so no number and no time is trusted: a jump by more than kMaxJump, another epoch, or a whole
+/// so no number and no time is trusted. A jump by more than kMaxJump, another epoch, or a whole
 /// `patience` of older numbers in a row restarts the sequence. Real time: O(1), allocates nothing.
 class SampleSequence {
  public:

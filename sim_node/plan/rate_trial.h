@@ -20,10 +20,10 @@ struct RateTrial {
   std::string refusal;   ///< why none was found
 };
 
-/// Plays the network by itself, its ports at rest, at rates that double, and takes the difference
-/// from the rate four times as high for the error; between two of them it goes by the order they
-/// show. Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of
-/// work: a second at most, on a machine as they are. The same choice on every machine.
+/// Plays the network by itself, its ports at rest, at rates that double. The error is the
+/// difference from the rate four times as high. Between two of them it goes by the order they show.
+/// Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of work:
+/// a second at most, on a machine as they are. The same choice on every machine.
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
                     const RateTrialOptions& options);
 

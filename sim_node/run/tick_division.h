@@ -8,9 +8,9 @@
 namespace cordis::sim {
 
 /// Steps per gesture period as an exact fraction, so that no rounding adds up: step n belongs to
-/// tick k when k < n / ratio <= k + 1. With 44,100 steps and 1000 gestures a second nine ticks of ten
-/// have 44 steps and one has 45; with an integer ratio all are alike, and the last step of a tick
-/// stands at its end. Real time: everything but the constructor is O(1) and allocates nothing.
+/// tick k when k < n / ratio <= k + 1. With 44,100 steps and 1000 gestures a second nine ticks of
+/// ten have 44 steps and one has 45. With an integer ratio all are alike, and the last step of a
+/// tick stands at its end. Real time: everything but the constructor is O(1) and allocates nothing.
 class TickDivision {
  public:
   /// The ratio of the rates is taken as the simplest fraction within 1e-13 of it.

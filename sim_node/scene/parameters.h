@@ -49,12 +49,12 @@ class Parameters {
     std::string hint;
   };
 
-  /// Sets a parameter of a liaison, for all its links that give it no value of their own; or of the
-  /// links of a name (a `name` of the scene, or string.links), which must not share their state
-  /// machine with others. Parameters are those that a link may give. What follows from the
-  /// parameter by a formula follows. `world`, where nothing else has this name, has the axes of a
-  /// constant gravity and the viscosity of a medium at rest. Nothing is set after a problem. Not in
-  /// real time.
+  /// Sets a parameter of a liaison, for all its links that give it no value of their own. Or it
+  /// sets that of the links of a name (a `name` of the scene, or string.links), which must not
+  /// share their state machine with others. Parameters are those that a link may give. What follows
+  /// from the parameter by a formula follows. `world`, where nothing else has this name, has the
+  /// axes of a constant gravity and the viscosity of a medium at rest. Nothing is set after a
+  /// problem. Not in real time.
   [[nodiscard]] Outcome set(const std::string& name, const std::string& parameter, double value);
 
   /// Parameters with their values, or why there are none.

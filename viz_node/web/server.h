@@ -37,7 +37,7 @@ struct ServerFigures {
 };
 
 /// One thread of its own serves every client. A client gets the newest frame when it has credit
-/// (FlowCredit), one message at a time; a client that stalls costs nothing but its socket, and is
+/// (FlowCredit), one message at a time. A client that stalls costs nothing but its socket, and is
 /// let go when it answers no ping for half a minute.
 class WebServer {
  public:

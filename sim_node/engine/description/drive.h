@@ -15,9 +15,10 @@ struct NetworkDescription;
 
 /// A vector that depends on time alone: a formula for each axis, or a table.
 ///
-/// A table keeps its first value before its first time, and its last one after the last time. Between two
-/// times it goes straight from one value to the next; a smooth one goes along cubics whose slopes are
-/// continuous, along each axis never beyond the two values (the slopes are those of Fritsch and Butland).
+/// A table keeps its first value before its first time, and its last one after the last time.
+/// Between two times it goes straight from one value to the next. A smooth one goes along cubics
+/// whose slopes are continuous (those of Fritsch and Butland). Along each axis it is never beyond
+/// the two values.
 struct TimeFunction {
   std::array<Program, 3> formula;  ///< per axis, of Quantity::kAge alone: here the time since step
                                    ///< 0 [s]; empty: 0

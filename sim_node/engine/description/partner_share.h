@@ -16,7 +16,7 @@ struct PartnerShare {
 };
 
 /// Rings without states have a stiff core and softer rings about it. Beyond the core a pair counts
-/// as its part of K' + 2 Z' of a pair in the core, rounded up, at the step of the network; so a
+/// as its part of K' + 2 Z' of a pair in the core, rounded up, at the step of the network. So a
 /// number of partners times the largest slopes is never too small. One for all other laws, and for
 /// other integrators than `cordis`.
 PartnerShare partner_share(const NetworkDescription& network, const SetLiaison& set) noexcept;

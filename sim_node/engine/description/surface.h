@@ -19,9 +19,9 @@ inline constexpr std::size_t kMaxSurfacePairs = std::size_t{1} << 24;
 /// dimensions alone.
 enum class SurfaceKind : std::uint8_t { kPlane = 0, kBox = 1, kCylinder = 2, kSegment = 3 };
 
-/// The shape of a MAT that is fixed, or whose position is driven. A set liaison acts between a first set
-/// of surfaces and a second one of balls, along the normal: the distance of a pair is that of the ball's
-/// centre from the nearest point of the surface, below 0 inside.
+/// The shape of a MAT that is fixed, or whose position is driven. A set liaison acts between a
+/// first set of surfaces and a second one of balls, along the normal. The distance of a pair is
+/// that of the ball's centre from the nearest point of the surface, below 0 inside.
 struct Surface {
   SurfaceKind kind = SurfaceKind::kPlane;
   std::uint32_t mat = 0;  ///< whose position is a point of the plane, or the centre

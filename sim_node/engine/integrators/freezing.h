@@ -31,7 +31,7 @@ struct WorldState;
 ///
 /// A sleeper wakes in the step in which the sum of all forces on it exceeds F, a link at it changes
 /// its state, or something from outside touches it. Forces are computed of each liaison at a mass
-/// that is awake, or beside one, with the same bits as without freezing: so nothing that is awake
+/// that is awake, or beside one, with the same bits as without freezing. So nothing that is awake
 /// knows of it, and the condition to wake is tested on whole forces. Fixed points are beside
 /// nothing: what sleepers put on them is not summed. A port and a MAT that is kept awake never
 /// sleep.

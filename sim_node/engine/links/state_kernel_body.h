@@ -1,7 +1,7 @@
 // sim_node/engine/links/state_kernel_body.h -- one step of the state machines of 8 rows.
 //
 // The rows of a batch that are in the same state go through the exits and the law of that state
-// together, the others left as they are; a batch in one state, the common case, goes once.
+// together. The others are left as they are. A batch in one state, the common case, goes once.
 #pragma once
 
 #include "sim_node/engine/expressions/program_kernel_body.h"

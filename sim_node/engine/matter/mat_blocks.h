@@ -24,9 +24,9 @@ class MatBlocks {
   static constexpr std::size_t kMinBalls = 4096;
   static constexpr std::size_t kBallsOfBlock = 256;
 
-  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work in each as that
-  /// lets them have; one where the network has few linear links and no large set, or links that join MATs of any two
-  /// places.
+  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work
+  /// in each as that lets them have. There is one block where the network has few linear links and
+  /// no large set, or links that join MATs of any two places.
   explicit MatBlocks(const NetworkDescription& description);
 
   std::size_t count() const noexcept { return first_.size() - 1; }

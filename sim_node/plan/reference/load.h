@@ -16,10 +16,10 @@ struct StepLoad {
   std::size_t step_count = 0;
 };
 
-/// Runs the network from its start, with all its masses awake: for some 50 ms, with liaisons of sets
-/// for some 500 ms, in which neighbour lists are made again, or for one step where that takes
-/// longer. It is the time of the thread, so that what else runs on the machine counts little. Not a
-/// promise: a scene in motion may have more contacts.
+/// Runs the network from its start, with all its masses awake, for some 50 ms. With liaisons of
+/// sets it does so for some 500 ms, in which neighbour lists are made again. It takes one step
+/// where that takes longer. It is the time of the thread, so that what else runs on the machine
+/// counts little. Not a promise: a scene in motion may have more contacts.
 /// @throws std::invalid_argument when the engine does not take the network.
 StepLoad measure_steps(engine::NetworkDescription network);
 

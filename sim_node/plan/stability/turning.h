@@ -11,10 +11,10 @@
 
 namespace cordis::plan {
 
-/// A spring with a rest length in 2 or 3 dimensions that is pressed by more than a quarter of it turns
-/// about so fast that undamped motion may gain energy, though each of its tangents is stable. Likewise
-/// any law whose push over the length is above a third of its largest slope. In 1 dimension a pair of a
-/// set turns about where its ends pass each other, and its push jumps there.
+/// A spring with a rest length may be pressed by more than a quarter of it in 2 or 3 dimensions. It
+/// then turns about so fast that undamped motion may gain energy, though each of its tangents is
+/// stable. Likewise any law whose push over the length is above a third of its largest slope. In 1
+/// dimension a pair of a set turns about where its ends pass each other, and its push jumps there.
 struct Turning {
   /// Pressing the weakest link or pair so far takes this [J]; infinite where none turns.
   double energy = std::numeric_limits<double>::infinity();
