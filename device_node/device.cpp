@@ -190,41 +190,56 @@ void Device::play_paced(Exchange& exchange) {
   }
 }
 
+/// Motors of this world have its pace: their guard counts in periods. A slower scene makes them slower.
 void Device::play_in_lockstep(Exchange& exchange) {
-  const auto watchdog = std::min<std::chrono::nanoseconds>(
-      std::chrono::nanoseconds(std::llround(config_.force_guard.watchdog_s * 1e9)), kRepeatAfter);
+  node::PacedLoop pace(config_.layout.rate_hz);
   while (has_part() && !node::stop_requested()) {
+    if (exchange.has_motors()) pace.wait();
     exchange.send_sample();
-    if (!exchange.await_answer(watchdog) && !keep_asking(exchange)) return;
+    if (!await_answer(exchange)) return;
     exchange.step();
     record_phase(exchange);
     keep_guardian();
   }
 }
 
-/// Sends the last sample again and again, motors off, until it is answered; false when the part is
-/// over first.
-bool Device::keep_asking(Exchange& exchange) {
-  exchange.let_go();
-  auto silent = milliseconds(0);
-  while (!exchange.await_answer(kRepeatAfter)) {
+/// Sends the last sample again and again until it is answered, while forces on motors fade; false when
+/// the part is over first.
+bool Device::await_answer(Exchange& exchange) {
+  const bool has_motors = exchange.has_motors();
+  const std::chrono::nanoseconds period(std::llround(1e9 / config_.layout.rate_hz));
+  std::chrono::nanoseconds silent{0};
+  std::chrono::nanoseconds asked{0};
+  while (!exchange.await_answer(has_motors ? period : kRepeatAfter)) {
     if (node::stop_requested() || !has_part()) return false;
-    silent += kRepeatAfter;
-    roster_.update();
-    if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
-      meter_.set_phase(Phase::kLost);
+    silent += has_motors ? period : kRepeatAfter;
+    if (has_motors) {
+      exchange.age_answer();
       record_phase(exchange);
+      keep_guardian();
     }
-    const bool never_answered = meter_.phase() == Phase::kWaiting;
-    if (silent >= kLongSilence && never_answered && !std::exchange(silence_reported_, true)) {
-      const std::string alive = roster_.name_of(msg::KIND_SIM_NODE);
-      spdlog::warn("no answer to the first sample for {} s: {}", kLongSilence.count(),
-                   alive.empty() ? "no sim_node of the session is alive"
-                                 : "sim_node " + alive + " is alive, and does not answer");
-    }
-    exchange.repeat_sample();
+    if (silent - asked < kRepeatAfter) continue;
+    asked = silent;
+    ask_again(exchange, silent);
   }
   return true;
+}
+
+/// Sends the last sample again, and reports a silence that is long.
+void Device::ask_again(Exchange& exchange, std::chrono::nanoseconds silent) {
+  roster_.update();
+  if (silent >= kLockstepPatience && meter_.phase() == Phase::kRunning) {
+    meter_.set_phase(Phase::kLost);
+    record_phase(exchange);
+  }
+  const bool never_answered = meter_.phase() == Phase::kWaiting;
+  if (silent >= kLongSilence && never_answered && !std::exchange(silence_reported_, true)) {
+    const std::string alive = roster_.name_of(msg::KIND_SIM_NODE);
+    spdlog::warn("no answer to the first sample for {} s: {}", kLongSilence.count(),
+                 alive.empty() ? "no sim_node of the session is alive"
+                               : "sim_node " + alive + " is alive, and does not answer");
+  }
+  exchange.repeat_sample();
 }
 
 /// Lets the forces fade. A simulated device in lockstep stays as it is: time stops.

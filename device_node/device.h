@@ -1,6 +1,7 @@
 // device_node/device.h -- one device in a session, from the first scene to the request to stop.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -42,7 +43,8 @@ class Device {
   void play_paced(Exchange& exchange);
   void play_in_lockstep(Exchange& exchange);
   bool has_part() const noexcept { return scenes_.part() == part_; }
-  bool keep_asking(Exchange& exchange);
+  bool await_answer(Exchange& exchange);
+  void ask_again(Exchange& exchange, std::chrono::nanoseconds silent);
   void leave(Exchange& exchange);
   void keep_guardian() const noexcept;
   void ask_for_realtime();

@@ -61,7 +61,9 @@ void Exchange::receive() noexcept {
 bool Exchange::await_answer(std::chrono::nanoseconds silence) noexcept {
   GestureMessage answer;
   while (channel_.receive(answer, silence)) {
-    if (consider(answer)) return true;  // all samples before this one have been answered
+    if (!consider(answer)) continue;
+    waited_s_ = 0.0;
+    return true;  // all samples before this one have been answered
   }
   return false;
 }
@@ -84,10 +86,10 @@ double Exchange::simulated_s(std::int64_t since_nsec) const noexcept {
   return static_cast<double>(clock_() - since_nsec) * 1e-9 * age_scale_;
 }
 
-void Exchange::let_go() noexcept {
-  if (!driver_.has_motors()) return;
-  driver_.let_go();
-  force_guard_.let_go();
+void Exchange::age_answer() noexcept {
+  CORDIS_ASSERT(lockstep_);
+  waited_s_ += 1.0 / config_.layout.rate_hz;
+  step();
 }
 
 void Exchange::leave() noexcept {
@@ -142,7 +144,7 @@ double Exchange::age_for_guard() noexcept {
   const double least = stalls_.has_stalled(age_scale_) && !lockstep_
                            ? config_.force_guard.watchdog_s
                            : leaving_age_s_;
-  return std::max(age_s(), least);
+  return std::max(age_s() + waited_s_, least);
 }
 
 /// How long ago the command before went to motors that take one at any time.

@@ -97,8 +97,9 @@ class Exchange {
   /// the driver takes it. Returns when no other can come. @param until_nsec  CLOCK_MONOTONIC
   void use_late_answer(std::int64_t until_nsec) noexcept;
 
-  /// In lockstep, when await_answer() has been in vain: motors off, if there are any.
-  void let_go() noexcept;
+  /// In lockstep, once for each period in which await_answer() has been in vain: the newest answer ages,
+  /// and the motors get what is left of it, as in step().
+  void age_answer() noexcept;
 
   /// Motors, one period, sensors. Sets the phase of the meter. It is waiting until the first
   /// answer, running while answers come, and standby while they go to another node. It is lost when
@@ -173,6 +174,7 @@ class Exchange {
   double time_scale_ = 1.0;          // of the periods
   double age_scale_ = 1.0;           // of what began before the present moment
   std::uint64_t paced_from_ = 0;     // first sample of the present pace
+  double waited_s_ = 0.0;            // in lockstep: since the sample was sent, in whole periods
   double leaving_s_ = 0.0;           // since leave()
   double leaving_age_s_ = 0.0;       // that the last answer is given; 0: it has its own
   bool present_ = false;             // the driver has its device

@@ -38,7 +38,6 @@ class TracedDriver final : public Driver {
   bool is_let_go() const noexcept override { return driver_->is_let_go(); }
   bool is_yielding() const noexcept override { return driver_->is_yielding(); }
   PointerPort* pointer_port() noexcept override { return driver_->pointer_port(); }
-  void let_go() noexcept override { driver_->let_go(); }
   void stop() noexcept override;
 
  private:

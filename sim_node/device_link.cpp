@@ -104,6 +104,10 @@ void DeviceLink::play(const scene::Scene& scene) {
   real_.play(scene);
 }
 
+std::string DeviceLink::objection_to(const scene::Scene& scene) const {
+  return refused_.objection_to(scene);
+}
+
 std::string DeviceLink::refusal() const {
   const std::string refused = refused_.text();
   const std::string undescribed = undescribed_.text();

@@ -47,6 +47,8 @@ class DeviceLink {
 
   /// The scene that devices must support from now on; any thread.
   void play(const scene::Scene& scene);
+  /// Why devices that have a force now would lose it in this scene; empty when none would. Any thread.
+  std::string objection_to(const scene::Scene& scene) const;
   /// Why devices are refused, or which are answered late; empty when none is. Any thread.
   std::string refusal() const;
   /// How late the devices of the scene are answered, and what they support; empty until that is

@@ -37,8 +37,10 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
           [launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
             return load_next_scene(launch, path, is_forced, problems);
           },
-          [is_forced](const scene::Scene& scene, config::Problems& problems) {
+          [this, is_forced](const scene::Scene& scene, config::Problems& problems) {
             check_stability(scene, is_forced, problems);
+            if (const std::string why = devices_.objection_to(scene); !why.empty())
+              problems.error({}, why);
           },
           [this](const scene::Scene& scene, std::uint64_t version) {
             publish_scene(scene, version);

@@ -84,9 +84,6 @@ class Driver {
   /// Where the hand on a page is handed in; null: the driver follows none.
   virtual PointerPort* pointer_port() noexcept { return nullptr; }
 
-  /// A scene in lockstep is silent: motors off until the next write(), for then forces grow again.
-  virtual void let_go() noexcept {}
-
   /// Motors off, at once. start() may follow.
   virtual void stop() noexcept = 0;
 };

@@ -90,11 +90,6 @@ bool Hardware::is_silent(std::int64_t now) const noexcept {
   return now - last_sample_nsec_ > patience;
 }
 
-void Hardware::let_go() noexcept {
-  stop();
-  guard_.start();
-}
-
 void Hardware::stop() noexcept {
   coupling_n_.fill(0.0);
   if (contact_ == Contact::kPresent) ask({});

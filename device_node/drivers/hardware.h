@@ -57,7 +57,6 @@ class Hardware : public Driver {
   bool has_motors() const noexcept override { return true; }
   std::string address() const override { return wire_->address(); }
   bool is_let_go() const noexcept override { return is_let_go_; }
-  void let_go() noexcept override;
   void stop() noexcept override;
 
   Contact contact() const noexcept { return contact_; }

@@ -53,6 +53,19 @@ void RefusedDevices::play(const scene::Scene& scene, std::int64_t now_nsec) {
   evaluate(now_nsec);
 }
 
+std::string RefusedDevices::objection_to(const scene::Scene& scene) const {
+  const std::vector<PortDemand> demands = demands_of(scene);
+  const std::lock_guard lock(mutex_);
+  std::string text;
+  for (const Known& device : known_) {
+    if (!device.is_there || !device.verdict->refusal.empty()) continue;
+    const Verdict verdict = check(device, demands);
+    if (verdict.refusal.empty() || verdict.waits) continue;
+    text += (text.empty() ? "" : "; ") + verdict.refusal;
+  }
+  return text;
+}
+
 bool RefusedDevices::receive(const msg::DeviceDescription& description, std::int64_t now_nsec,
                              bool is_elsewhere) {
   if (!makes_sense(description)) return false;
@@ -151,11 +164,12 @@ std::string RefusedDevices::name_of(const Known& device) const {
 }
 
 /// A sentence per port that the device does not support, and what it supports at all of them.
-RefusedDevices::Verdict RefusedDevices::check(const Known& device) const {
+RefusedDevices::Verdict RefusedDevices::check(const Known& device,
+                                              const std::vector<PortDemand>& demands) const {
   const double periods = device.delay.periods();
   Verdict result{periods, device.delay.is_measured(), {}, false, {}};
   bool is_refused = false;
-  for (const PortDemand& demand : demands_) {
+  for (const PortDemand& demand : demands) {
     if (demand.device_id != device.device_id) continue;
     const PortVerdict verdict = verdict_on(demand, device.limits, periods);
     std::vector<std::string> reasons = verdict.lacks;
@@ -239,7 +253,7 @@ void RefusedDevices::evaluate(std::int64_t now_nsec) {
   for (Known& device : known_) {
     if (!device.verdict || device.verdict->periods != device.delay.periods() ||
         device.verdict->is_measured != device.delay.is_measured())
-      device.verdict = check(device);
+      device.verdict = check(device, demands_);
   }
   std::string text;
   bool all_wait = true;

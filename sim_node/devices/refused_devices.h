@@ -49,6 +49,10 @@ class RefusedDevices {
   /// The scene that is played from now on.
   void play(const scene::Scene& scene, std::int64_t now_nsec = node::monotonic_nsec());
 
+  /// Why devices that have a force now would lose it in this scene: a sentence per port; empty when none
+  /// would. The scene is not played.
+  std::string objection_to(const scene::Scene& scene) const;
+
   /// A device reports what it is; not believed when a number in it makes no sense, or when the same
   /// process has reported something before. @return whether it is believed
   /// @param is_elsewhere  it runs on another host
@@ -110,7 +114,7 @@ class RefusedDevices {
     std::int64_t kept_nsec = 0;                ///< belongs to the thread that decides
   };
   void evaluate(std::int64_t now_nsec);
-  Verdict check(const Known& device) const;
+  Verdict check(const Known& device, const std::vector<PortDemand>& demands) const;
   std::optional<std::string> wait_reason(const Known& device, const PortDemand& demand) const;
   std::vector<DeviceLoop> find_loops(std::string& delay_text) const;
   void report_delay(const Known& device, const DelayInUse& before, std::int64_t now_nsec);
@@ -125,7 +129,7 @@ class RefusedDevices {
   AnswerDelays* delays_;
   std::int64_t checked_nsec_ = 0;     // measure() before; the thread of it, as the next
   std::int64_t unmeasured_nsec_ = 0;  // time in which nothing was measured
-  std::mutex mutex_;                  // of whoever decides
+  mutable std::mutex mutex_;          // of whoever decides
   std::vector<PortDemand> demands_;
   std::vector<Known> known_;       // each at the index of its row
   mutable std::mutex text_mutex_;  // of what is reported

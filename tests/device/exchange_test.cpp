@@ -442,18 +442,28 @@ TEST(Exchange, InLockstepRepeatsTheVerySameSample) {
   EXPECT_EQ(rig.channel.sent[1].value, rig.channel.sent[0].value);
 }
 
-TEST(Exchange, InLockstepMotorsGrowAnewAfterASilence) {
-  for (const bool motors : {false, true}) {
-    Rig rig(true);
-    rig.driver.motors = motors;
-    for (int n = 0; n < 3; ++n) rig.period(true, 12.0);
-    ASSERT_EQ(rig.driver.commands.back()[0], 12.0);
+TEST(Exchange, InLockstepMotorsFadeInASilenceAndGrowAnewAfterIt) {
+  Rig rig(true);
+  rig.driver.motors = true;
+  for (int n = 0; n < 3; ++n) rig.period(true, 12.0);
+  ASSERT_EQ(rig.driver.commands.back()[0], 12.0);
 
-    rig.exchange.let_go();
-
-    EXPECT_EQ(rig.period(true, 12.0), motors ? 0.0 : 12.0) << "a simulated key has felt no silence";
-    EXPECT_EQ(rig.period(true, 12.0), motors ? 5.0 : 12.0);
+  rig.exchange.send_sample();
+  double before = 12.0;
+  for (int n = 0; n < 60; ++n) {
+    rig.exchange.age_answer();
+    const double now = rig.driver.commands.back()[0];
+    EXPECT_LE(before - now, 5.0 + 1e-12) << "the slew limit of a period";
+    EXPECT_LE(now, before);
+    before = now;
   }
+  EXPECT_EQ(before, 0.0) << "older than the watchdog";
+
+  rig.channel.waiting.push_back(rig.answer(12.0));
+  ASSERT_TRUE(rig.exchange.await_answer(nanoseconds(1)));
+  rig.exchange.step();
+  EXPECT_LE(rig.driver.commands.back()[0], 5.0);
+  EXPECT_EQ(rig.period(true, 12.0), 10.0);
 }
 
 TEST(Exchange, InLockstepDoesNotDependOnTheClock) {

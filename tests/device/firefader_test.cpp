@@ -65,19 +65,6 @@ TEST_F(FireFaderTest, LivesThroughEveryHarmAndUnpluggingAtOneKilohertz) {
   }
 }
 
-TEST_F(FireFaderTest, LetsGoOfItsMotorsWhenASceneInLockstepIsSilent) {
-  Faders faders;
-  faders.plug.into_serial_line(link());
-  const auto driven = driver("firefader", port() + ", full_scale_n: 2", two_faders());
-  driven->start(Role::kMass);
-  ASSERT_TRUE(until(*driven, {1.0, 1.0}, [&](bool) { return faders.forces[0] == 63; }));
-
-  ASSERT_TRUE(driven->has_motors());
-  driven->let_go();
-
-  EXPECT_TRUE(test::eventually([&] { return faders.forces[0] == 0; }));
-}
-
 TEST_F(FireFaderTest, TakesTheForceAwayBeforeItGivesUpADevice) {
   Faders faders;
   faders.plug.harm = [](int n) { return n < 200 ? Plug::Harm::kNone : Plug::Harm::kDropped; };

@@ -1,8 +1,10 @@
 // tests/device/force_log.h -- when a board was given which force, as the board itself sees it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "node/time.h"
@@ -16,12 +18,25 @@ class ForceLog {
   void note(double largest) {
     const std::lock_guard lock(mutex_);
     if (largest == 0.0 && newest_ > 0.0) zeros_nsec_.push_back(node::monotonic_nsec());
+    ++frames_;
+    largest_fall_ = std::max(largest_fall_, newest_ - largest);
     newest_ = largest;
   }
 
   double newest() const {
     const std::lock_guard lock(mutex_);
     return newest_;
+  }
+
+  std::uint64_t frames() const {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+
+  /// The largest that its force fell by from one frame to the next since the last call.
+  double take_largest_fall() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(largest_fall_, 0.0);
   }
 
   /// When its force first went to 0 since then, CLOCK_MONOTONIC; 0: it has not.
@@ -36,6 +51,8 @@ class ForceLog {
  private:
   mutable std::mutex mutex_;
   double newest_ = 0.0;
+  std::uint64_t frames_ = 0;
+  double largest_fall_ = 0.0;
   std::vector<std::int64_t> zeros_nsec_;
 };
 

@@ -170,6 +170,7 @@ TEST_P(Control, LoadPlaysAnotherSceneAndTheKeyFeelsIt) {
 }
 
 TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
+  session_.add_file("key.yaml", steady_key(-0.01, 0.0) + "stiffness_limit_n_per_m: 1000\n");
   start();
   dds::Reader<msg::GestureForces> forces(session_.participant(), dds::Topic::kForces);
   msg::GestureForces force;
@@ -181,6 +182,8 @@ TEST_P(Control, SetChangesAParameterAndTheKeyFeelsIt) {
   expect_refused({"set", "wall.stifness_n_per_m=1"}, "has no parameter 'stifness_n_per_m'");
   expect_refused({"set", "wall.stiffness_n_per_m=-1"}, "must be >= 0, got -1");
   expect_refused({"set", "wall.stiffness_n_per_m=soft"}, "must be a number, got 'soft'");
+  expect_refused({"set", "wall.stiffness_n_per_m=20000"},
+                 "the device 'keyboard' supports 1000 N/m");
   expect_refused({"state", "wall", "broken"}, "'wall' has no states");
   ASSERT_TRUE(feels(3.5, forces, force));
 }

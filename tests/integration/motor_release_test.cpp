@@ -35,7 +35,7 @@ class Board {
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
   virtual std::string plug_in(const std::filesystem::path& folder) = 0;
-  virtual const ForceLog& log() const = 0;
+  virtual ForceLog& log() = 0;
 };
 
 const char* const kLimits =
@@ -62,7 +62,7 @@ firefader: {full_scale_n: 5, <patient>port: <port>}
 )",
                   {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
-  const ForceLog& log() const override { return faders_.log; }
+  ForceLog& log() override { return faders_.log; }
 
  private:
   Faders faders_;
@@ -82,7 +82,7 @@ haply: {rest_m: [0, 0.1], <patient>port: <port>}
 )",
                   {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
-  const ForceLog& log() const override { return board_.log; }
+  ForceLog& log() override { return board_.log; }
 
  private:
   PantographBoard board_;
@@ -105,7 +105,7 @@ kfb1: {<patient><where>}
 )",
                                          {{"patient", kPatient}, {"where", where}});
   }
-  const ForceLog& log() const override { return board_.log; }
+  ForceLog& log() override { return board_.log; }
 
  private:
   bool udp_;
@@ -155,8 +155,8 @@ bool has_ended(pid_t pid) {
 /// A session under whose hand a board is pressed with 2 N, and its processes.
 class PressedKey {
  public:
-  explicit PressedKey(const std::string& board_name)
-      : name_(board_name), board_(board_of(board_name)), session_("realtime", kWithAView) {
+  explicit PressedKey(const std::string& board_name, const std::string& clock = "realtime")
+      : name_(board_name), board_(board_of(board_name)), session_(clock, kWithAView) {
     session_.add_file("scene.yaml", wall_scene(200.0));
     session_.add_file("key.yaml", board_->plug_in(session_.folder()) +
                                       "trace: {file: " + trace().string() + "}\n");
@@ -207,7 +207,7 @@ class PressedKey {
                 static_cast<double>(zero_nsec - killed_nsec_) * 1e-6);
   }
 
-  const Board& board() const { return *board_; }
+  Board& board() { return *board_; }
   LiveSession& session() { return session_; }
   pid_t launcher() const { return launcher_; }
   pid_t sim() const { return sim_; }
@@ -341,6 +341,34 @@ TEST(MotorRelease, ANodeThatIsStoppedLosesItsForcesAndRampsThemUpAgain) {
   EXPECT_TRUE(
       key.session().node("keyboard").wait_for_output("let go of outside the loop", kPatience));
   key.await_press();
+}
+
+/// The guard counts in periods, so a board that were asked faster would get its forces faster.
+TEST(MotorRelease, InLockstepABoardKeepsItsPaceAndForcesFadeWhileTheSceneIsSilent) {
+  constexpr double kRateHz = 1000.0;
+  for (const std::string board : {"kfb1", "kfb1 over UDP"}) {
+    PressedKey key(board, "lockstep");
+    key.start_nodes();
+    if (HasFatalFailure()) return;
+    ForceLog& log = key.board().log();
+    const std::int64_t begin_nsec = node::monotonic_nsec();
+    const std::uint64_t before = log.frames();
+    ASSERT_TRUE(eventually([&] { return log.frames() > before + 500; })) << board;
+    const auto frames = static_cast<double>(log.frames() - before);
+    EXPECT_LE(frames,
+              1.1 * kRateHz * 1e-9 * static_cast<double>(node::monotonic_nsec() - begin_nsec))
+        << board;
+    const double pressed = log.newest();  // 2 N
+    static_cast<void>(log.take_largest_fall());
+
+    ASSERT_EQ(kill(key.sim(), SIGSTOP), 0);
+    ASSERT_TRUE(eventually([&] { return log.newest() == 0.0; })) << board;
+    const double fall = log.take_largest_fall();
+    ASSERT_EQ(kill(key.sim(), SIGCONT), 0);
+
+    EXPECT_LE(fall, 0.16 * pressed) << board << ": 0.3 N in a period, and a unit of the board";
+    key.await_press();
+  }
 }
 
 TEST(MotorRelease, AGuardianThatIsKilledIsStartedAgain) {

@@ -296,6 +296,22 @@ TEST(RefusedDevices, AreThoseThatCannotBearTheSceneWhicheverComesFirst) {
   EXPECT_EQ(devices.text(), "");
 }
 
+TEST(RefusedDevices, ObjectToASceneInWhichTheyWouldLoseTheirForce) {
+  RefusedDevices devices(1);
+  devices.play(walls_of("100"));
+  devices.receive(description_of(1, 1.5));  // supports 1001 N/m
+  devices.receive(description_of(2, 3.0));  // supports 2001 N/m
+
+  EXPECT_EQ(devices.objection_to(walls_of("500")), "");
+  const std::string why = devices.objection_to(walls_of("501"));
+  EXPECT_NE(why.find("supports 1001 N/m"), std::string::npos) << why;
+  EXPECT_EQ(why.find("supports 2001 N/m"), std::string::npos) << why;
+  EXPECT_FALSE(devices.refuses(1)) << "the scene was not played";
+
+  devices.play(walls_of("501"));
+  EXPECT_EQ(devices.objection_to(walls_of("502")), "") << "it has no force already";
+}
+
 constexpr std::int64_t kSecondOfWall = 1'000'000'000;
 
 /// Devices of a session in real time, and what they measure.
