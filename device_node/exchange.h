@@ -116,7 +116,7 @@ class Exchange {
 
   /// The part is over: motors are not switched off in the middle of a force. From now on nothing is
   /// taken any more. With every step() the last answer fades as an old one does, over limit / slew.
-  /// That lasts no longer than 0.5 s, for a stop is a stop.
+  /// The fade lasts no longer than 0.5 s, for a stop is a stop.
   void leave() noexcept;
   bool has_left() const noexcept {
     return leaving_age_s_ >= config_.force_guard.watchdog_s || leaving_s_ >= kLongestLeave;

@@ -30,7 +30,7 @@ class StallWatch {
  private:
   // Limits of a stall of the loop itself, safely below the watchdog of 20 ms that boards have.
   static constexpr double kStall = 0.018;  // [s]
-  // Two commands of a slow device are apart by one period and a half at most: one follows an answer
+  // Two commands of a slow device are apart by one period and a half at most. One follows an answer
   // at the beginning of a period, the next waits for Exchange::kAnswerShare of its own.
   static constexpr double kStallPeriods = 1.9;
 

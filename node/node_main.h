@@ -37,7 +37,7 @@ struct NodeStart {
   CommandGuard command_guard() const;
 
   /// Joins the session once more, for the force loop alone. A participant has locks that all its
-  /// writers and readers share: here only the loop and the threads of DDS take them, so that the
+  /// writers and readers share. Here only the loop and the threads of DDS take them, so that the
   /// loop never waits for a thread of normal priority. In the realtime clock those threads have
   /// realtime priority, below that of the loops: without it forces come late on a busy machine.
   /// @throws std::runtime_error as Participant

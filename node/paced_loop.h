@@ -22,7 +22,7 @@ RealtimeGrant make_realtime(int priority) noexcept;
 
 /// Ticks at a fixed rate against absolute deadlines of CLOCK_MONOTONIC.
 ///
-/// The deadlines are the whole multiples of the period, shifted by a phase: two processes of one
+/// The deadlines are the whole multiples of the period, shifted by a phase. Two processes of one
 /// host that pace the same rate with different phases take turns, always in the same order and
 /// distance.
 ///

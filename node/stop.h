@@ -5,8 +5,8 @@
 
 namespace cordis::node {
 
-/// SIGINT, SIGTERM and SIGHUP, unless that is ignored, become a request to stop that every thread can
-/// ask for and wait on: a motor must not be left alone when a terminal is closed. SIGPIPE is
+/// SIGINT, SIGTERM and SIGHUP, unless that is ignored, become a request to stop that every thread
+/// can ask for and wait on. A motor must not be left alone when a terminal is closed. SIGPIPE is
 /// ignored. Call once at the beginning of main, before any thread exists.
 void install_stop_signals();
 

@@ -19,9 +19,9 @@ namespace cordis::sim {
 /// silent. While none plays, the clock of this host alone sets the pace.
 ///
 /// The period follows the phase of the samples (node::PeriodGrid): a device whose clock is another
-/// host's is answered on arrival as well. Of several devices the one that sends last sets the phase;
-/// the others wait for it. A sample that is late or lost holds the tick until the end of the period
-/// alone; one that is late is played with the next one, without an answer of its own.
+/// host's is answered on arrival as well. Of several devices the one that sends last sets the
+/// phase; the others wait for it. A sample that is late or lost holds the tick until the end of the
+/// period alone. One that is late is played with the next one, without an answer of its own.
 class ArrivalPace {
  public:
   /// @param rate_hz  ticks per second, > 0

@@ -11,7 +11,7 @@ namespace cordis::viz {
 /// Lets frames through at a rate, whatever rate they come at.
 ///
 /// A frame up to half a period early is let through, so that frames that come at just that rate,
-/// with the jitter of the machine, all pass; over time the rate holds all the same.
+/// with the jitter of the machine, all pass. Over time the rate holds all the same.
 class FramePace {
  public:
   explicit FramePace(double rate_hz) noexcept

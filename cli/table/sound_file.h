@@ -14,11 +14,11 @@ struct SoundChannel {
   double full_scale = 1.0;  ///< the value that becomes the sample 1, > 0
 };
 
-/// A WAV file of 32-bit floating point with the plain header, one channel per sound. Beyond 4 GiB it is
-/// an RF64 file.
-/// Where the rate of the steps is none of a sound card it is resampled to kUsualRate, with the
-/// quality SOXR_VHQ of libsoxr: 28 bits, pass band to 0.913 of the lower Nyquist frequency.
-/// Values beyond full scale are kept: they are louder than 1, and cut off by a player alone.
+/// A WAV file of 32-bit floating point with the plain header, one channel per sound. Beyond 4 GiB
+/// it is an RF64 file. Where the rate of the steps is none of a sound card it is resampled to
+/// kUsualRate. The quality is SOXR_VHQ of libsoxr: 28 bits, pass band to 0.913 of the lower Nyquist
+/// frequency. Values beyond full scale are kept: they are louder than 1, and cut off by a player
+/// alone.
 class SoundFile {
  public:
   static constexpr double kUsualRate = 48000.0;  ///< [1/s]

@@ -7,10 +7,10 @@
 namespace cordis::device {
 
 /// One or two motor faders. Request: 127, force A, force B (int8, never 127). Answer: 255, position
-/// A and B, analog A and B, touch A and B (0..254). No checksum and no numbers: a byte lost shows
-/// as a 255 in the wrong place, and a place that no hand reaches in a period is not believed before
-/// a second answer says the same. 57600 baud carry about 500 cycles per second. Source: E. Berdahl,
-/// A. Kontogeorgakopoulos, FireFader firmware.
+/// A and B, analog A and B, touch A and B (0..254). There is no checksum and there are no numbers.
+/// A byte lost shows as a 255 in the wrong place. A place that no hand reaches in a period is not
+/// believed before a second answer says the same. 57600 baud carry about 500 cycles per second.
+/// Source: E. Berdahl, A. Kontogeorgakopoulos, FireFader firmware.
 class FireFader final : public Hardware {
  public:
   /// @param full_scale_n  force of a fader at the largest value it can be sent

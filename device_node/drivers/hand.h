@@ -21,7 +21,7 @@ struct HandSettings {
 };
 
 /// A finger on a key. It wants to follow a target, and is a mass on a spring and a damper that pull
-/// it there; so a force on it really moves it (F/K when at rest), as it does a person's.
+/// it there. So a force on it really moves it (F/K when at rest), as it does a person's.
 ///
 ///   m dv/dt = K (target - x) + Z (d target/dt - v) + F
 /// Scheme: Z implicit, then x+ = x + h v+. K (target - x) + Z (d target/dt - v+) is at most the force

@@ -38,7 +38,7 @@ struct HardwareSettings {
 /// request, is taken as it comes. Before a wire is closed, the motors are given no force.
 ///
 /// A board that says that it has let go of its motors is given no force until it has not said so
-/// for 0.1 s; so is one whose forces the guardian has taken away. Meanwhile write() returns false.
+/// for 0.1 s. So is one whose forces the guardian has taken away. Meanwhile write() returns false.
 ///
 /// In role mass the device plays as it is. Role liaison is for devices without a sensor of force.
 /// There the motors pull the handle to the commanded place by a coupling, F = K (x - x_h) + Z (v -

@@ -21,8 +21,8 @@ struct PointerSettings {
   bool only_while_held = false;
 };
 
-/// Keys with the mechanics of the driver `mock`, each with a hand that follows the pointer of a page
-/// through its own spring: a force holds the key back from the pointer by F/K.
+/// Keys with the mechanics of the driver `mock`, each with a hand that follows the pointer of a
+/// page through its own spring. A force holds the key back from the pointer by F/K.
 ///
 /// A target comes every 16 ms or so. The hand follows it with a lag of kLag and no faster than the
 /// speed limit, so that no target makes a jump of force. An axis that is not held keeps its hand where

@@ -17,8 +17,8 @@ namespace cordis::dds {
 bool send_datagram(int file, const std::uint8_t* datagram, std::uint32_t size,
                    const sockaddr_in& address) noexcept;
 
-/// Datagrams for those who only observe a force loop: the loop copies them here, which costs no
-/// system call, and a thread that is in no hurry sends them, in the order in which they came. None is
+/// Datagrams for those who only observe a force loop. The loop copies them here, which costs no
+/// system call. A thread that is in no hurry sends them, in the order in which they came. None is
 /// lost: one that has no room is sent at once, after those before it.
 class DatagramQueue {
  public:

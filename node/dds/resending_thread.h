@@ -12,8 +12,8 @@ namespace cordis::dds {
 std::vector<pid_t> threads_of_process();
 
 /// Gives the lowest realtime priority to the thread by which a participant announces itself and
-/// sends again what was lost, and the name "dds-resend". That thread never waits for a lock of a
-/// writer: it tries until it has it, and keeps a core for most of a second from a thread of lower
+/// sends again what was lost, and the name "dds-resend". The thread never waits for a lock of a
+/// writer. It tries until it has it, and keeps a core for most of a second from a thread of lower
 /// priority that holds the lock. So whoever takes such a lock has a higher one (Participant::Impl).
 /// The thread shares the lock by which the participant sends with the force loop, which ordinary
 /// priority would hold up. Nothing changes where the threads have ordinary priority.

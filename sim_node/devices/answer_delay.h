@@ -11,9 +11,9 @@
 
 namespace cordis::sim {
 
-/// The delays of the newest answers to one process of a device: a histogram of two windows of
-/// kWindow each, of which the older one is dropped in turn, so that 5 to 10 s count. Bins are 1/32
-/// of an octave wide from 1 us to 1 s; a delay counts as the upper end of its bin.
+/// The delays of the newest answers to one process of a device. It is a histogram of two windows of
+/// kWindow each. The older one is dropped in turn, so that 5 to 10 s count. Bins are 1/32 of an
+/// octave wide from 1 us to 1 s; a delay counts as the upper end of its bin.
 ///
 /// One thread records, and another one reads. Recording is O(1), takes no lock and allocates
 /// nothing.
@@ -52,7 +52,7 @@ class AnswerDelayHistogram {
 
 /// The measured delays of all devices of a session. A sample says how old the newest answer was
 /// when it went to the motors. Samples without a new answer leave the force of the answer before on
-/// the motors: a period more counts for each of them, until the force is kGivenUp old and the
+/// the motors. A period more counts for each of them, until the force is kGivenUp old and the
 /// device has taken it off. A sample that is lost on its way counts as one that was a period
 /// younger than the next, unless the force was off by then. A process that stalls for a while loses
 /// many samples and delays one answer. No report is believed that is shorter than the time in which
@@ -82,7 +82,7 @@ class AnswerDelays {
   void add(std::uint64_t epoch, double rate_hz, std::int64_t now_nsec) noexcept;
 
   /// Loop: a new sample of the process. A delay that is no number, not above 0, or above 1 s is
-  /// left out; one below kFastestAnswer, or below what answer() has measured of the sample that is
+  /// left out. One below kFastestAnswer, or below what answer() has measured of the sample that is
   /// answered, counts as that. O(kMaxProcesses + samples lost, at most kMaxLost), no lock, no
   /// allocation.
   void record(std::uint64_t epoch, const Report& report, std::int64_t now_nsec) noexcept;

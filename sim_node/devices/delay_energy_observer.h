@@ -13,8 +13,8 @@ namespace cordis::sim {
 /// E - W is energy from nowhere: a hand of stiffness k that is d periods T late makes k d T v^2 in
 /// every moment. The scene takes D, as its own account says, wherever, in whatever state and by
 /// whatever law its liaisons do. While a loop comes to rest, M is below D. When it swings up, M is
-/// above. When it swings for ever, M is D, but for what W says too much. That is where a force
-/// bends between two samples, as that of a saturated motor does. So
+/// above. When it swings forever, M is D, but for what W says too much. That is where a force bends
+/// between two samples, as that of a saturated motor does. So
 ///
 ///     A = sum of M + |f(n) - 2 f(n-1) + f(n-2)| |dx| / 8 over the devices - 0.98 D
 ///

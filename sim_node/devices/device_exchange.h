@@ -109,13 +109,14 @@ class DeviceExchange {
   Role role() const noexcept { return role_; }
   bool has_new_sample() const noexcept { return has_new_; }
   bool is_disconnected() const noexcept { return silent_ticks_ > patience_ticks_; }
-  /// True if no sample has come for kDisconnectedAfter, even if the device is not supported: one whose
-  /// answers are to be measured counts as disconnected, and is answered on arrival all the same.
+  /// True if no sample has come for kDisconnectedAfter, even if the device is not supported. One
+  /// whose answers are to be measured counts as disconnected, and is answered on arrival all the
+  /// same.
   bool is_silent() const noexcept { return unheard_ticks_ > patience_ticks_; }
-  /// True if the device was refused for longer than kRestart, and is supported now: no answer goes
-  /// to it for kRestart (or 8 periods), so that its guard starts again, with forces that grow from 0
-  /// and no energy in its account. One that was refused for a moment, because its description came
-  /// a little after its first sample, still has the ramp of its start.
+  /// True if the device was refused for longer than kRestart, and is supported now. No answer goes
+  /// to it for kRestart (or 8 periods), so that its guard starts again, with forces that grow from
+  /// 0 and no energy in its account. One that was refused for a moment, because its description
+  /// came a little after its first sample, still has the ramp of its start.
   bool is_restarting() const noexcept { return restart_left_ > 0; }
   /// True if a device was there, fell silent, and was not let go of.
   bool is_missed() const noexcept { return is_expected_ && is_disconnected(); }

@@ -35,7 +35,7 @@ struct DeviceReach {
   std::array<double, kCoordinates> force_n{};  ///< force of the hand, in either direction
 };
 
-/// What a device reports of its travel and its forces; a number of it that makes no sense, or says
+/// What a device reports of its travel and its forces. A number of it that makes no sense, or says
 /// more than a hand is capable of, leaves the bound of an unknown device.
 DeviceReach reach_of(const msg::DeviceDescription& description) noexcept;
 

@@ -12,11 +12,11 @@
 
 namespace cordis::sim {
 
-/// Watches the energy M that the age of the forces makes at the ports of a device of role liaison,
-/// and damps their masses when all devices together make more than the scene takes: see
-/// DelayEnergyObserver.
+/// Watches the energy M that the age of the forces makes at the ports of a device of role liaison.
+/// Damps their masses when all devices together make more than the scene takes
+/// (DelayEnergyObserver).
 ///
-/// From then on M alone is held to: while it is above 0 a damper M dt / (sum of dx^2) at the port
+/// From then on M alone counts. While it is above 0 a damper M dt / (sum of dx^2) at the port
 /// masses takes it away, but not beyond what keeps their step stable. Without delay, above 4 m /
 /// T^2, no damper helps.
 ///

@@ -64,7 +64,7 @@ struct BandEdge {
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz);
 
-/// The liaison that comes and goes and is the stiffest for its masses: at its switching the scheme
+/// The liaison that comes and goes and is the stiffest for its masses. At its switching the scheme
 /// changes the energy of a collision by a factor between 1 - K'/4 and 1 / (1 - K'/4).
 struct ContactGain {
   LiaisonId liaison;

@@ -26,9 +26,9 @@ struct ServerConfig {
   TopicBoard* topics = nullptr;  ///< what Foxglove reads, outlives the server; null: it is refused
 };
 
-/// What the server has done. Delays run from the hand to the view: from the newest device sample
-/// that a frame shows, or from the frame itself while no device plays, until a page said that it
-/// has drawn it.
+/// What the server has done. Delays run from the hand to the view, until a page said that it has
+/// drawn a frame. They begin at the newest device sample that the frame shows, or at the frame
+/// itself while no device plays.
 struct ServerFigures {
   std::uint64_t drawn = 0;  ///< frames drawn, over all pages
   double latency_p50_s = 0.0;

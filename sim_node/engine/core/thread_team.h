@@ -11,9 +11,9 @@ namespace cordis::engine {
 
 /// A fixed team of threads: the one that calls, and others that wait for it.
 ///
-/// Who waits polls for some 50 us, so that the threads of steps that follow one another stay awake, then
-/// sleeps; a team of more members than the machine has cores sleeps at once. A team serves one caller at a time.
-/// Its members have the floating-point mode of FloatMode and take no signals.
+/// Who waits polls for some 50 us, so that the threads of steps that follow one another stay awake,
+/// then sleeps. A team of more members than the machine has cores sleeps at once. A team serves one
+/// caller at a time. Its members have the floating-point mode of FloatMode and take no signals.
 class ThreadTeam {
  public:
   /// Threads for which a step is laid out: larger teams share no sets.

@@ -36,9 +36,9 @@ Vec3 value_at(const TimeFunction& function, double time) noexcept;
 ///     position = origin + turn F(t)      of a MatKind::kPort, which nothing else moves
 ///     force    = turn F(t)               on a MatKind::kMass, beside all others
 ///
-/// The time of step n is n dt, never a sum. The velocity that dampers see is the difference quotient of
-/// the last period, (x(n) - x(n-1)) / dt, as that of every other MAT: so the work of the drive is exactly
-/// what its liaisons receive. It begins with the quotient of the first period.
+/// The time of step n is n dt, never a sum. The velocity that dampers see is the difference
+/// quotient of the last period, (x(n) - x(n-1)) / dt, as that of every other MAT. So the work of
+/// the drive is exactly what its liaisons receive. It begins with the quotient of the first period.
 struct Drive {
   std::uint32_t mat = 0;
   std::uint32_t function = 0;  ///< index in NetworkDescription::time_functions

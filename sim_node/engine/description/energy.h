@@ -8,7 +8,7 @@ namespace cordis::engine {
 ///     kinetic + elastic + gravity = initial + port_work + switching - dissipated + residual
 ///
 /// All of them belong to the middle of the last period, between x(n-1) and x(n), where this scheme
-/// keeps its account: a force f(n) changes the kinetic energy of the half-step velocities by
+/// keeps its account. A force f(n) changes the kinetic energy of the half-step velocities by
 /// exactly f(n) . (x(n+1) - x(n-1)) / 2, and dissipated and port_work are these exact works.
 ///
 /// For linear links in 1 dimension, elastic is the product that the scheme keeps, K e(n) e(n-1) /

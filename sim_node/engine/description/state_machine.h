@@ -73,10 +73,10 @@ struct Transition {
                                                ///< condition
 };
 
-/// A liaison with states. In each step, for each link: the quantities; the exits of its present
-/// state in the order written, of which the first that holds changes the state; the tension of the
-/// state it is in then. So a link changes at most once a step.
-/// [Luc90 III.2.3 b formalism to modify the liaison]
+/// A liaison with states. Each step finds, for each link, the quantities first. Then come the exits
+/// of its present state in the order written. The first that holds changes the state. The tension
+/// is that of the state it is in then. So a link changes at most once a step. [Luc90 III.2.3 b
+/// formalism to modify the liaison]
 struct StateMachine {
   std::string name;
   std::vector<LinkState> states;

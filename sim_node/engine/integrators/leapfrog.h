@@ -24,10 +24,10 @@ namespace cordis::engine {
 /// extrapolated.
 ///
 /// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
-/// elongation increment. The account belongs to the moment of the last forces: kinetic energy
-/// of the centred velocity (x(n+1) - x(n-1)) / 2 dt, with implicit dampers the mean of those of the
-/// two velocities; all else in closed form. What finite steps do to it is the residual, of second
-/// order; implicit dampers, whose work is that of their forces, leave none.
+/// elongation increment. The account belongs to the moment of the last forces, all but the kinetic
+/// energy in closed form. That is the energy of the centred velocity (x(n+1) - x(n-1)) / 2 dt. With
+/// implicit dampers it is the mean of those of the two velocities. What finite steps do to it is
+/// the residual, of second order; implicit dampers, whose work is that of their forces, leave none.
 class Leapfrog final : public FullStepIntegrator {
  public:
   explicit Leapfrog(const NetworkDescription& network);

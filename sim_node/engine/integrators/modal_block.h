@@ -46,7 +46,7 @@ class ModalBlock {
   double elastic_energy() const noexcept;
   double gravity_energy() const noexcept;
 
-  /// What 1 N on MAT a, alternating from step to step, moves MAT b by [m/N]: a stiffness K between
+  /// What 1 N on MAT a, alternating from step to step, moves MAT b by [m/N]. A stiffness K between
   /// two MATs makes the scheme diverge when K times that of the two against each other is above 1.
   /// Infinite when a mode diverges by itself.
   double alternating_compliance(std::uint32_t a, std::uint32_t b) const noexcept;

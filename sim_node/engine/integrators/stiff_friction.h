@@ -29,14 +29,15 @@ bool solves_stiff_friction(const NetworkDescription& network);
 ///
 ///     u = u_free - dt / 2 (1/m_a + 1/m_b) tension(u),   u = (x(n+1) - x(n-1)) / 2 dt along the link
 ///
-/// all other forces given, by narrowing down the interval that holds the root: however steep the
-/// law, a jump too, where the tension is then what holds the ends together (dry friction that sticks).
-/// Where a law falls with the speed there may be three roots: the one on the side and branch of the
-/// extrapolated speed is taken, so that what sticks goes on sticking until it cannot. Links that
-/// share a mass are solved in turn, each with the last tensions of the others, until these no longer
-/// change, at most kMaxRounds times. Where linear dampers are implicit (ImplicitDamping), u is their
-/// w, and 1/m its answer to the tension through all of them; the tensions are constant over the period,
-/// which with dampers of Z dt / m above 1 makes what drags on friction of first order. In the step in which a state is entered its speed is 0, as
+/// all other forces given, by narrowing down the interval that holds the root. That works however
+/// steep the law is. It may jump, where the tension is then what holds the ends together (dry
+/// friction that sticks). Where a law falls with the speed there may be three roots. The one on the
+/// side and branch of the extrapolated speed is taken, so that what sticks goes on sticking until
+/// it cannot. Links that share a mass are solved in turn, each with the last tensions of the
+/// others, until these no longer change, at most kMaxRounds times. Where linear dampers are
+/// implicit (ImplicitDamping), u is their w, and 1/m its answer to the tension through all of them.
+/// The tensions are constant over the period, which with dampers of Z dt / m above 1 makes what
+/// drags on friction of first order. In the step in which a state is entered its speed is 0, as
 /// everywhere.
 class StiffFriction {
  public:

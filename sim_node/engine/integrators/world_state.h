@@ -78,8 +78,8 @@ struct WorldState {
   StepEnergy add_set_forces(const ForceColumns& columns) noexcept;
   /// Adds the forces of all liaisons as `cordis` does; enters what they take.
   void add_forces_at_half_step(StepEnergy& energy) noexcept;
-  /// Clears the forces and adds those of all liaisons for an account that is kept at moments:
-  /// dampers and conditions see the velocity (position - extrapolated) / dt, Maxwell elements how
+  /// Clears the forces and adds those of all liaisons for an account that is kept at moments.
+  /// Dampers and conditions see the velocity (position - extrapolated) / dt, Maxwell elements how
   /// the MATs have moved. Enters changes of state and what Maxwell elements have taken.
   /// @return half of what viscosity takes in a period at this moment [J]
   [[nodiscard]] double add_forces_at_full_step(const double* extrapolated,

@@ -47,7 +47,7 @@ class MatArray {
                     const MatBlocks& blocks);
 
   /// Takes the forces of step 0, computed with the delayed positions of the constructor, for a
-  /// start of second order: the delayed positions become those of the half-step velocity v0 - a0 dt
+  /// start of second order. The delayed positions become those of the half-step velocity v0 - a0 dt
   /// / 2. Clears the forces.
   void start() noexcept;
 

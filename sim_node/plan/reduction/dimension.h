@@ -12,7 +12,7 @@ namespace cordis::plan {
 /// no force ever leads out of it. Exact: what is left out stays 0. Scene::subspace reports where it
 /// is shown.
 ///
-/// In 1 dimension the links of a line have a sign, and ends pass each other; so on a line every
+/// In 1 dimension the links of a line have a sign, and ends pass each other. So on a line every
 /// link must have no rest length or no stiffness, and none states, nor a signal. Conditions on a
 /// speed along an axis keep a scene in its dimensions.
 /// @return what was done, for a person; empty when nothing. O(MATs + links).

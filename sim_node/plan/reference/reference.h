@@ -24,9 +24,9 @@ struct Sampling {
 ///
 /// Made twice, by an Reference integrator of one tolerance and by one of a hundred times that, and
 /// once more from a start that differs by a millionth of the amplitude. Where the first two part,
-/// the reference is known no further. Where the third has gone away from the second by a
-/// thousandth of the amplitude, by an exponential growth, the motion is chaotic: errors of any
-/// integrator grow alike, and say nothing of it.
+/// the reference is known no further. Where the third has gone away from the second by a thousandth
+/// of the amplitude, by an exponential growth, the motion is chaotic. Errors of any integrator grow
+/// alike, and say nothing of it.
 struct Reference {
   Sampling sampling;
   std::vector<std::uint32_t> masses;  ///< the MATs whose motion this is

@@ -5,9 +5,10 @@
 
 namespace cordis::plan {
 
-/// The largest speed [m/s] of a driven position, as dampers see it; 0 when none is driven. Of a table it
-/// is a bound. Formulas are asked at up to 20,000 moments of the first 10 s, at uneven distances, and at
-/// 1,000 up to 100 s: what moves for a shorter time only may stay unseen. O(moments + entries).
+/// The largest speed [m/s] of a driven position, as dampers see it; 0 when none is driven. Of a
+/// table it is a bound. Formulas are asked at up to 20,000 moments of the first 10 s, at uneven
+/// distances, and at 1,000 up to 100 s. What moves for a shorter time only may stay unseen.
+/// O(moments + entries).
 double largest_drive_speed(const engine::NetworkDescription& network);
 
 /// The sum of the largest forces [N] of all driven forces, found likewise.
