@@ -21,8 +21,8 @@
 
 namespace cordis::device {
 
-/// Waits for a scene that names the device, plays the role that the scene gives it, and goes on
-/// with the next scene when the scene changes or sim_node restarts; until a stop is requested.
+/// Waits for a scene that names the device, and plays the role that the scene gives it, until a
+/// stop is requested. It goes on with the next scene when the scene changes or sim_node restarts.
 class Device {
  public:
   /// @param participant  for all but the force loop

@@ -15,8 +15,8 @@ namespace cordis::device {
 
 /// The force loop of a device in one role, without its pace. In lockstep one period is
 ///   send_sample();  await_answer() until the very sample is answered;  step();
-/// where step() guards what was answered, hands it to the driver, lets the driver act for a period
-/// and reads its sensors for the next sample.
+/// Here step() guards what was answered, and hands it to the driver. It lets the driver act for a
+/// period, and reads its sensors for the next sample.
 ///
 /// In real time one period is play_period(), at its beginning, and use_late_answer(), for its rest.
 /// When the driver changes its command within a period, the sensors are read and sent at once, and

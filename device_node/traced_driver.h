@@ -17,8 +17,9 @@ struct TraceSettings {
 
 /// Any driver, with its last samples kept in memory and written as CSV when the device ends:
 ///   time_nsec,commanded_0,...,sensed_0,...,age_s
-/// one line per write() or change_command() to the driver: when it was (CLOCK_MONOTONIC), what it was given, what its
-/// sensors then said, and how old the sample was that the command answers. Real time: a copy of two rows per period.
+/// Each write() or change_command() to the driver makes a line. The line says when that was
+/// (CLOCK_MONOTONIC), what the driver was given, what its sensors then said, and how old the
+/// answered sample was. Real time: a copy of two rows per period.
 class TracedDriver final : public Driver {
  public:
   TracedDriver(std::unique_ptr<Driver> driver, TraceSettings settings, const AxisLayout& layout);

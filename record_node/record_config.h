@@ -30,9 +30,9 @@ std::map<std::string, std::string> read_idl_files(const std::vector<std::string>
 /// The words `name.key=value` of the command line of this process, which is that of a node.
 std::vector<std::string> own_overrides();
 
-/// What a take says of its session: host, versions, clock, launch file, command line, how the clock
-/// of the messages (CLOCK_MONOTONIC) stands to that of the file (UTC), and each seed that a file
-/// names, as `seed FILE: KEY`; `seed` is that of all others.
+/// What a take says of its session: host, versions, clock, launch file and command line. It also
+/// says how the clock of the messages (CLOCK_MONOTONIC) stands to that of the file (UTC), and each
+/// seed that a file names, as `seed FILE: KEY`; `seed` is that of all others.
 /// @param files  files_of() the launch
 std::map<std::string, std::string> about_session(const config::Launch& launch,
                                                  const std::vector<AttachedFile>& files);

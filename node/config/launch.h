@@ -64,13 +64,13 @@ struct Launch {
 };
 
 /// Reads a launch file. Every fault is a problem: unknown keys and programs, a domain beyond
-/// 0..101, a session name that is not of 1 to 64 letters, digits, '_' and '-', no node, two
-/// sim_nodes, names with the same name_hash. Without `session:` the session has the name of the
+/// 0..101, no node, two sim_nodes, names with the same name_hash. So is a session name that is not
+/// of 1 to 64 letters, digits, '_' and '-'. Without `session:` the session has the name of the
 /// file. The sections of the nodes are not looked into. Without `required:` every node but a
 /// viz_node and a record_node is required. Without `respawn:` every node starts again when it dies;
-/// in a lockstep or asap session, whose result must not depend on a restart, those two alone.
-/// A node with a `clock` other than that of the session is left out.
-/// `record:` stands for a record_node named `record`.
+/// in a lockstep or asap session, whose result must not depend on a restart, those two alone. A
+/// node with a `clock` other than that of the session is left out. `record:` stands for a
+/// record_node named `record`.
 /// @param overrides  words `name.key=value` (key of a node, may be nested: hand.mass_kg) and
 ///                   `clock=`, `domain=`, `session=`, `security=`, `record=`, `network.key=` for the
 ///                   session itself, each value in YAML; a word that fits nothing is a problem.

@@ -123,9 +123,10 @@ class World {
   /// Precondition: the set and the member exist.
   std::uint32_t partners_of(std::size_t set, std::size_t member) const noexcept;
 
-  /// Goes on where another world is (with as much room made for bonds), of a network that differs in the parameters of links, gravity and medium alone:
-  /// motion, states, ports, account and counts are taken over. What the energy of the links changes by,
-  /// and that in gravity since the start, counts as switching. Real time: O(MATs + links + pairs), no allocation.
+  /// Goes on where another world is (with as much room made for bonds), of a network that differs
+  /// in the parameters of links, gravity and medium alone. Motion, states, ports, account and
+  /// counts are taken over. What the energy of the links changes by, and that in gravity since the
+  /// start, counts as switching. Real time: O(MATs + links + pairs), no allocation.
   /// @param room  its capacity is at least max_values_of_state(); what is in it is overwritten
   /// @return false when the networks do not fit; then this world is as it was.
   [[nodiscard]] bool take_over(const World& before, std::vector<double>& room) noexcept;

@@ -68,8 +68,9 @@ class Parameters {
   /// set() has it; of links that differ the first one counts.
   [[nodiscard]] Values get(const std::string& what) const;
 
-  /// Names that get() and set() take: the liaisons that links or sets are of, in the order of the
-  /// scene, the links that are of no liaison, and the world where it acts on a mass.
+  /// Names that get() and set() take. They are the liaisons that links or sets are of, in the order
+  /// of the scene, and the links that are of no liaison. The world is one of them where it acts on
+  /// a mass.
   [[nodiscard]] std::vector<std::string> names_in_use() const;
 
  private:

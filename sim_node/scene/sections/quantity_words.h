@@ -32,8 +32,9 @@ const QuantityWord* find_quantity(Owner owner, const std::string& word);
 /// The words of MATs include those of a body.
 std::string list_of_quantities(Owner owner);
 
-/// Gives a variable of a MAT the direction that this MAT has by itself: that of a port of one axis, whose rest
-/// is taken off a position, or the line of a scene in 1-D. @return false where there is none
+/// Gives a variable of a MAT the direction that this MAT has by itself. It is that of a port of one
+/// axis, whose rest is taken off a position, or the line of a scene in 1-D. @return false where
+/// there is none
 [[nodiscard]] bool take_own_direction(const Scene& scene, engine::Variable& variable);
 
 }  // namespace cordis::scene
