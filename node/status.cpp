@@ -105,6 +105,8 @@ void StatusPublisher::publish() {
   report_rejoin();
   mismatches_.report(now);
   rejoins_.report(now);
+  const bool is_paused = status_.phase() == msg::PHASE_PAUSED;
+  if (std::exchange(was_paused_, is_paused)) rate_.skip_pause(now, status_.ticks());
   rate_.update(now, status_.ticks());
   const double target_hz = std::exchange(target_rate_hz_, status_.target_rate_hz());
   if (target_hz > 0.0 && target_hz != target_rate_hz_) rate_.restart(now, status_.ticks());

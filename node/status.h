@@ -34,8 +34,9 @@ class StatusPublisher {
   StatusPublisher(const StatusPublisher&) = delete;
   StatusPublisher& operator=(const StatusPublisher&) = delete;
 
-  /// Publishes at once, beside the regular rhythm: for a change of phase. Real time: wakes the
-  /// publisher's thread, takes no lock.
+  /// Publishes at once, beside the regular rhythm: for a change of phase. The mean rate leaves out
+  /// pauses, and is exact where this says when they begin and end. Real time: wakes the publisher's
+  /// thread, takes no lock.
   void publish_now() noexcept;
 
  private:
@@ -55,6 +56,7 @@ class StatusPublisher {
   std::chrono::steady_clock::time_point begun_;
   TickRate rate_;
   double target_rate_hz_ = 0.0;  // published last
+  bool was_paused_ = false;      // likewise
   std::counting_semaphore<> wake_{0};
   std::atomic<bool> ending_{false};
   std::thread thread_;

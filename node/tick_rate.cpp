@@ -16,6 +16,7 @@ double TickRate::rate(const Reading& older, const Reading& newer) noexcept {
 
 void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
   const Reading now{now_nsec, ticks};
+  looked_ = now;
   if (first_.ticks == 0) {
     if (ticks > 0 && now.nsec > first_.nsec) mean_hz_ = rate(first_, now);
     first_ = now;
@@ -25,6 +26,13 @@ void TickRate::update(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
   if (now.nsec - last_.nsec < kMinNsec) return;
   reached_hz_ = rate(last_, now);
   last_ = now;
+}
+
+void TickRate::skip_pause(std::int64_t now_nsec, std::uint64_t ticks) noexcept {
+  const bool had_ticks = first_.ticks > 0;
+  first_.nsec += now_nsec - looked_.nsec;
+  first_.ticks += had_ticks ? ticks - looked_.ticks : ticks;
+  looked_ = {now_nsec, ticks};
 }
 
 void TickRate::restart(std::int64_t now_nsec, std::uint64_t ticks) noexcept {

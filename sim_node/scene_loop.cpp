@@ -83,6 +83,7 @@ bool SceneLoop::execute() {
     submit_frame();
     return false;
   }
+  const bool was_paused = runner_.is_paused();
   runner_.execute(*request);
   inputs_.command(*request);
   if (is_forced_) simulation().keep_devices();
@@ -91,6 +92,7 @@ bool SceneLoop::execute() {
   mailbox_.executed();
   if (new_scene) submit_frame();
   record_state();
+  if (publisher_ != nullptr && was_paused != runner_.is_paused()) publisher_->publish_now();
   return true;
 }
 

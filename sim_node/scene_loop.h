@@ -7,6 +7,7 @@
 
 #include "node/node_main.h"
 #include "node/repeated_event.h"
+#include "node/status.h"
 #include "sim_node/device_link.h"
 #include "sim_node/frame_publisher.h"
 #include "sim_node/input_publisher.h"
@@ -30,6 +31,8 @@ class SceneLoop {
             double duration_s, bool is_forced, dds::Participant& participant, DeviceLink& devices,
             StatusSnapshot& status);
 
+  /// Before the first turn: whom a pause is reported to at once.
+  void report_pauses_to(node::StatusPublisher& publisher) noexcept { publisher_ = &publisher; }
   /// Before the first turn: FramePublisher::wait_for_signal_reader(), at most 5 s.
   void wait_for_signal_reader(const std::string& node);
   /// Before the first turn: waits until a node reads the answers to devices and the signals that
@@ -92,6 +95,7 @@ class SceneLoop {
   SoundPublisher sounds_;
   DeviceLink& devices_;
   StatusSnapshot& status_;
+  node::StatusPublisher* publisher_ = nullptr;  // null before a run
   const dds::Participant& participant_;
   std::atomic<double> time_scale_{1.0};
   std::uint64_t turns_ = 0;  // for the pace of frames while the scene is paused

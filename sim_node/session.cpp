@@ -60,6 +60,7 @@ void Session::share_steps() {
 
 int Session::run() {
   share_steps();
+  loop_.report_pauses_to(status_);
   control_.publish_first_scene();
   loop_.record_state();
   devices_.play(loop_.simulation().scene());

@@ -137,6 +137,21 @@ TEST_P(Control, PausesStepsAndResumes) {
       "sim", [&](const msg::NodeStatus& status) { return status.step() > step + 1000; }));
 }
 
+TEST_P(Control, TheMeanRateCountsNoPause) {
+  start();
+  ASSERT_TRUE(
+      status_.wait_for("sim", [](const msg::NodeStatus& status) { return status.ticks() > 500; }));
+  expect_done({"pause"}, "paused");
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
+  const double mean_hz = status_.of("sim").mean_rate_hz();
+  const std::int64_t paused_nsec = status_.of("sim").time_nsec();
+
+  const std::int64_t until_nsec = paused_nsec + 3'000'000'000;
+  ASSERT_TRUE(status_.wait_for(
+      "sim", [&](const msg::NodeStatus& status) { return status.time_nsec() > until_nsec; }));
+  EXPECT_NEAR(status_.of("sim").mean_rate_hz(), mean_hz, 1e-9 * mean_hz);
+}
+
 TEST_P(Control, ResetBeginsTheSceneAnewUnderANewVersion) {
   start();
   dds::Reader<msg::SceneDescription> descriptions(session_.participant(), dds::Topic::kDescription);

@@ -104,6 +104,21 @@ const cases = {
     await until('the key is down', async () => (await height(page, KEY)) < -0.11);
   },
 
+  'a reply goes when a command from a terminal makes it untrue': async (session) => {
+    const { page } = session;
+    await page.evaluate(() => {
+      window.setTimeoutBefore = window.setTimeout;
+      window.setTimeout = () => 0; // nothing takes a reply away after a while
+    });
+    await page.click('#control button[data-verb="pause"]');
+    await banner(page, 'paused');
+    await until('the reply is shown', async () => /^paused at step/.test(await textOf(page, '#reply')));
+    const ctl = session.start('ctl', program('cordis'), ['ctl', join(source, 'launch_configs/plucked_string.yaml'), 'resume', '--domain', session.domain, '--timeout', '60s']);
+    assert.equal(await ctl.ended, 0, ctl.log);
+    await until('the reply has gone', async () => (await textOf(page, '#reply')) === '');
+    await page.evaluate(() => (window.setTimeout = window.setTimeoutBefore));
+  },
+
   'Ctrl-C ends every process, and the launcher reports how it went': async ({ page, launcher, pageErrors }) => {
     assert.deepEqual([await viz(page, 'errors'), pageErrors], [[], []]);
     assert.equal(await launcher.end('SIGINT'), 0);

@@ -29,6 +29,29 @@ TEST(TickRate, OfARunTooShortForTwoLooksIsThatSinceTheLastLookWithoutTicks) {
   EXPECT_EQ(rate.reached_hz(), 500.0);
 }
 
+TEST(TickRate, TheMeanCountsNoPause) {
+  TickRate rate(0);
+  rate.update(500 * kMsec, 500);
+  rate.update(2'500 * kMsec, 2'500);  // the pause begins
+  rate.skip_pause(3'000 * kMsec, 2'500);
+  rate.update(3'000 * kMsec, 2'500);
+  EXPECT_EQ(rate.reached_hz(), 0.0);
+  rate.skip_pause(7'500 * kMsec, 2'507);  // seven single ticks
+  rate.update(7'500 * kMsec, 2'507);
+  EXPECT_EQ(rate.mean_hz(), 1'000.0);
+  rate.update(8'500 * kMsec, 3'407);
+  EXPECT_NEAR(rate.mean_hz(), 2'900.0 / 3.0, 1e-9);
+}
+
+TEST(TickRate, APauseBeforeTheFirstTickIsPartOfTheWait) {
+  TickRate rate(0);
+  rate.update(500 * kMsec, 0);
+  rate.skip_pause(1'500 * kMsec, 0);
+  rate.update(1'500 * kMsec, 0);
+  rate.update(2'500 * kMsec, 1'000);
+  EXPECT_EQ(rate.mean_hz(), 1'000.0);
+}
+
 TEST(TickRate, TheMeanBeginsAgainWhenTheLoopAimsAtAnotherRate) {
   TickRate rate(0);
   rate.update(500 * kMsec, 500);

@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colouring', 'format', 'colours', 'keyboards', 'key_marks', 'link_groups', 'signal_store', 'slow_motion'];
+  const names = ['net_forces', 'colouring', 'format', 'colours', 'keyboards', 'key_marks', 'link_groups', 'refusal', 'signal_store', 'slow_motion', 'stale_reply'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, timeScaleOf, percentOf, withUnit, joined } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, refusalOf, isStale, timeScaleOf, percentOf, withUnit, joined } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -75,6 +75,29 @@ const cases = {
         if (!Number.isNaN(value)) assert.ok(Math.abs(time - timeOf(value)) <= 2 / stepHz, `run ${run}: row ${value} at ${time} s, not ${timeOf(value)}`);
       }
     }
+  },
+
+  'the reason why a device gets no force is an alarm, and how late its answers are is none': () => {
+    const stiff = "port 'key' is as stiff as 3100 N/m, and the device 'hand' supports 1001 N/m: driver kfb1 is given no force";
+    const far = "port 'key' needs an answer within 9796 us, and the device 'hand' runs on another host";
+    const late = "the answers to the device 'hand' take 1.208 periods, and it supports 703 N/m";
+    assert.deepEqual(refusalOf({ state: 'waiting', text: stiff }), ['a device gets no force', `${stiff}.`]);
+    assert.deepEqual(refusalOf({ state: 'running', text: `${stiff}; 1/4 of real time` })?.[0], 'a device gets no force', 'another one plays');
+    assert.deepEqual(refusalOf({ state: 'waiting', text: far }), ['a device gets no force', `${far}.`]);
+    assert.deepEqual(refusalOf({ state: 'disconnected', text: 'the scene makes energy' }), ['the devices are let go of', 'the scene makes energy.']);
+    assert.equal(refusalOf({ state: 'running', text: late }), null);
+    assert.equal(refusalOf({ state: 'waiting', text: '' }), null);
+    assert.equal(refusalOf(undefined), null);
+  },
+
+  'a reply that another command has made untrue is stale': () => {
+    assert.ok(isStale('paused at step 12', true, false));
+    assert.ok(isStale("'wall' restarts, paused", true, false));
+    assert.ok(isStale('goes on at step 12', false, true));
+    assert.ok(!isStale('paused at step 12', false, true), 'the pause is shown after its reply');
+    assert.ok(!isStale('goes on at step 12', true, false));
+    assert.ok(!isStale('paused at step 12', true, true));
+    assert.ok(!isStale('sim_node does not answer', true, false));
   },
 
   'of a vibration it is the mean that a triangle weighs': () => {

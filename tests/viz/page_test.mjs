@@ -229,6 +229,13 @@ const cases = {
     assert.match(await textOf(page, '#banner-text'), /sim was last heard/);
     assert.equal(await textOf(page, '#loop'), '–');
     await page.screenshot({ path: join(out, 'page_waiting.png') });
+    const refusal = "port 'key' is as stiff as 3100 N/m, and the device 'keyboard' supports 1001 N/m: driver kfb1 is given no force";
+    session.source = session.scene('--refusal', refusal);
+    await banner(page, 'a device gets no force');
+    assert.equal(await textOf(page, '#banner-text'), `${refusal}.`);
+    await page.screenshot({ path: join(out, 'page_refusal.png') });
+    await session.source.end('SIGKILL');
+    await banner(page, 'waiting for sim_node');
     session.source = session.scene('--scene', 'grid', '--mats', '900');
     await until('the new scene is drawn', async () => (await viz(page, 'lastFrame'))?.matCount === 900);
     await drawn(page, 10);

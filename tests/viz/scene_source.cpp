@@ -58,7 +58,8 @@ struct Options {
   bool colours = false;   // of the scene's own, for three bodies
   bool keyboard = false;  // the device is one of four keys
   float tool_radius_m = 0.0F;
-  bool bonds = false;  // in a grid: two, of which one does nothing
+  bool bonds = false;   // in a grid: two, of which one does nothing
+  std::string refusal;  // of the device, for which the scene waits
   bool bad_frames = false;
   bool hold_domain = false;
 };
@@ -101,6 +102,8 @@ Options read_options(int argc, char** argv) {
       options.keyboard = true;
     } else if (word == "--bonds") {
       options.bonds = true;
+    } else if (word == "--refusal") {
+      options.refusal = value();
     } else if (word == "--bad-frames") {
       options.bad_frames = true;
     } else if (word == "--hold-domain") {
@@ -443,7 +446,13 @@ int publish(const Options& options) {
     status.certified_partners(12);
     status.refused_inputs(3);
   };
-  const node::StatusPublisher sim_status(sim, msg::KIND_SIM_NODE, epoch, speak);
+  const node::StatusPublisher sim_status(sim, msg::KIND_SIM_NODE, epoch,
+                                         [&](msg::NodeStatus& status) {
+                                           speak(status);
+                                           if (options.refusal.empty()) return;
+                                           status.phase(msg::PHASE_WAITING);
+                                           status.text(options.refusal);
+                                         });
   const node::StatusPublisher keyboard_status(keyboard, msg::KIND_DEVICE_NODE, epoch,
                                               [&](msg::NodeStatus& status) {
                                                 speak(status);

@@ -2,6 +2,7 @@
 import type { Connection } from './connection.ts';
 import { parametersIn } from './parameters.ts';
 import type { NodeState, Reply } from './protocol.ts';
+import { isStale } from './stale_reply.ts';
 
 const SHOWN_MS = 6000;
 const PATIENCE_MS = 4000;
@@ -40,7 +41,10 @@ export class Controls {
 
   /** Takes what is newest about the simulation; undefined when there is none. */
   update(sim: NodeState | undefined, replies: Reply[]): void {
+    const wasPaused = this.paused;
     this.paused = sim?.state === 'paused';
+    // Another terminal may command too.
+    if (isStale(this.reply.textContent ?? '', wasPaused, this.paused)) this.reply.textContent = '';
     this.viewOnly.hidden = this.connection.mayCommand;
     this.scenes.disabled = sim === undefined || sim.kind !== 'sim_node' || !this.connection.mayCommand;
     for (const button of this.buttons) {

@@ -3,6 +3,7 @@
 import { count, duration, joined, NONE, plain, rate, threeDigits, withUnit } from './format.ts';
 import { countsLine, eventLine } from './events.ts';
 import { VERSION, type Description, type Hello, type NodeState, type Reply, type Status } from './protocol.ts';
+import { refusalOf } from './refusal.ts';
 import { fillRows, setText } from './rows.ts';
 import { timeScaleOf } from './slow_motion.ts';
 import { takeIn, type Take } from './take.ts';
@@ -209,6 +210,8 @@ export class Hud {
       const since = Number.isFinite(measured.sinceFrameS) ? `for ${duration(measured.sinceFrameS)}` : 'yet';
       return ['no frames', `sim_node is there, but no frame has come ${since}.`, 'bad'];
     }
+    const refusal = refusalOf(this.alive('sim_node'));
+    if (refusal !== null) return [...refusal, 'warn'];
     const amiss = this.nodes.filter((node) => node.state === 'lost' || node.state === 'failed');
     if (amiss.length > 0) {
       const device = amiss.some((node) => node.kind === 'device_node');
