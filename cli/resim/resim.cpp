@@ -57,9 +57,8 @@ std::string differences_of(const FrameFindings& findings) {
   if (findings.force && findings.force->largest_n > 0.0) {
     const ForceDifference& found = *findings.force;
     text += fmt::format(
-        "largest difference of a force on a port at step {} ({:.6g} s): {:.3g} N, '{}', {:.3g} N "
-        "in "
-        "the take and {:.3g} N now\n",
+        "largest difference of a force on a port at step {} ({:.6g} s): {:.3g} N, '{}', "
+        "{:.3g} N in the take and {:.3g} N now\n",
         found.step, found.time_s, found.largest_n, found.port, found.taken_n, found.now_n);
   }
   if (findings.unmatched > 0) {
