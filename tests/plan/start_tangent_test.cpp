@@ -1,6 +1,7 @@
 // tests/plan/start_tangent_test.cpp
 #include "sim_node/plan/stability/start_tangent.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -131,6 +132,75 @@ TEST(StartTangent, IsNotSureOfWhatImplicitSpringsHold) {
   ASSERT_LT(sure, 1.0);
   scene.step = 1.02 * sure;
   EXPECT_GT(largest_excursion(scene, 4000), 1e6);
+}
+
+/// What drives the motion, beside what else the state has.
+engine::LinkState driving(double viscosity) {
+  engine::LinkState state;
+  state.dissipation = expression_law(-viscosity * q(engine::Quantity::kSpeed));
+  return state;
+}
+
+TEST(StartTangent, IsNotSureOfWhatALawDrivesBesideImplicitDampers) {
+  NetworkDescription scene = mass_on_two(93.0, 1.5, {});
+  scene.mats[1].mass = 0.0028;
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  scene.step = 0.015;
+  const double damped = StartTangent(scene).diverging_step();
+  scene.step = 1.25 * damped;
+  EXPECT_GT(largest_excursion(scene, 4000), 1e6);
+
+  scene.state_machines[0].states = {driving(0.14)};
+  EXPECT_LT(largest_excursion(scene, 4000), 1.0) << "the driving law holds it";
+  EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
+  scene.mats.push_back(mass(0.0028, Vec3(2, 0, 0)));  // as if the first mass were held
+  scene.links.push_back({1, 2, 1000.0, 1.5, 1.0});
+  EXPECT_LT(StartTangent(scene).diverging_step(), scene.step);
+}
+
+TEST(StartTangent, CountsTheFallOfALawThatJustTouches) {
+  engine::LinkState falling;
+  falling.elasticity = engine::Table({-1.0, 0.0, 1.0}, {40.0, 0.0, 3.0});
+  falling.pushes = false;
+  NetworkDescription scene = mass_on_two(100.0, 0.0, falling);
+  scene.state_links[0].rest_length = scene.mats[1].position.x();
+  const double limit = 2.0 * std::sqrt(0.03 / 60.0);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), limit, 1e-4 * limit);
+
+  scene.state_machines[0].states = {driving(0.5)};
+  scene.state_machines[0].states[0].pulls = false;
+  const double driven = plan::limit_step(100.0 / 0.03, -0.5 / 0.03);
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), driven, 1e-4 * driven);
+}
+
+TEST(StartTangent, CountsThatCompressedImplicitLinksGiveWayAcross) {
+  // Two links of 0.5 N/m are pressed from 6.1 m to 0.1 m: each takes 0.5 * 6 / 0.1 = 30 N/m from 100 N/m.
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.integrator = engine::IntegratorKind::kImplicit;
+  scene.mats = {fixed(Vec3(-1, 0, 0)), fixed(Vec3(0, -0.1, 0)), fixed(Vec3(0, 0.1, 0)),
+                mass(0.03, Vec3(1e-6, 0, 0))};
+  scene.links = {{1, 3, 0.5, 0.0, 6.1}, {2, 3, 0.5, 0.0, 6.1}};
+  scene.state_machines = {state_machine(100.0)};
+  scene.state_links = {{0, 3, 0, 1.0}};
+  const auto grows_by = [](const NetworkDescription& network) {
+    World world = make_world(network);
+    double largest = 0.0;
+    for (int n = 0; n < 4000; ++n) {
+      world.step();
+      largest = std::max(largest, std::abs(world.position(3).x()));
+    }
+    return largest / 1e-6;
+  };
+
+  const double limit = 2.0 * std::sqrt(0.03 / 40.0);
+  const double sure = StartTangent(scene).diverging_step();
+  EXPECT_NEAR(sure, limit, 1e-6 * limit);
+  scene.step = 0.98 * limit;
+  EXPECT_LT(grows_by(scene), 10.0);
+  scene.step = 1.02 * limit;
+  EXPECT_GT(grows_by(scene), 1e3);
 }
 
 /// Adds the pair of two MATs as a set, with the first state machine.

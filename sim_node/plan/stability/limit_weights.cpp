@@ -13,7 +13,8 @@ namespace {
 
 /// Stable while 3.852 M - dt^2 K > 0. Surely diverging beyond B(Z') M - dt^2 K > 0: there the form
 /// of the scheme at the root -1 has changed its sign. B is convex, hence below its chord from Z' = 0
-/// to the largest Z' of the network. What is extrapolated beside it only makes it worse.
+/// to the largest Z' of the network. What opposes the motion and is extrapolated beside it only makes it
+/// worse. What drives the motion does not: StartTangent holds its ends.
 void weigh_implicit_damping(const engine::NetworkDescription& network, LimitWeights& weights,
                             Limit limit) {
   if (limit == Limit::kDiverging) {

@@ -445,14 +445,24 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
   tangent.acts = acts_at(state, tangent.tension) && (state.pulls || tangent.tension < -margin) &&
                  (state.pushes || tangent.tension > margin) &&
                  std::abs(tangent.tension) < state.force_limit - margin;
-  if (!tangent.acts) {  // it only gives way across, where it is pressed
+  const bool has_viscous_root = is_root(state.dissipation);
+  const bool bends = !has_root && !has_viscous_root;
+  if (!tangent
+           .acts) {  // it gives way across, where it is pressed, and on one side of where it touches
+    const auto limited = [&](double e) {
+      return std::clamp(state.stiffness * e + elastic(e), state.pushes ? -state.force_limit : 0.0,
+                        state.pulls ? state.force_limit : 0.0);
+    };
+    const bool touches = std::abs(limited(elongation) - tangent.tension) <= margin;
     tangent.tension = state.pushes ? std::clamp(tangent.tension, -state.force_limit, 0.0) : 0.0;
+    tangent.jumps = jumps(limited, elongation);
+    if (tangent.jumps) return tangent;
+    tangent.stiffness = std::min(rise(limited, elongation), 0.0);
+    if (touches && bends) tangent.viscosity = std::min(state.viscosity + rise(viscous, 0.0), 0.0);
     return tangent;
   }
   tangent.stiffness = stiffness;
-  const bool has_viscous_root = is_root(state.dissipation);
   tangent.sticks = has_viscous_root && std::get<engine::Power>(state.dissipation).coefficient > 0.0;
-  const bool bends = !has_root && !has_viscous_root;
   tangent.jumps = jumps(elastic, elongation) || (bends && jumps(viscous, 0.0));
   if (tangent.jumps) {
     tangent.stiffness = state.stiffness;

@@ -50,14 +50,20 @@ engine::StateMachine start_state_alone(const engine::StateMachine& state_machine
 /// is not seen. Of an expression, which has no closed form, the product of its tension and elongation.
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
-/// The tangent of a liaison at one point without speed, in the state of its start.
+/// The tangent of a liaison at one point without speed, in the state of its start. Where it does not act,
+/// stiffness and viscosity are 0, or those of its fall on one side of where it just touches.
 struct Tangent {
-  double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]; 0 unless it acts
+  double stiffness = 0.0;  ///< along the link, below 0 where a law falls [N/m]
   double viscosity = 0.0;  ///< likewise [N s/m]
   double tension = 0.0;    ///< where it does not act, only what it pushes with at its limit [N]
   bool acts = false;       ///< surely: neither let go of, nor about to be, nor at its limit
   bool sticks = false;     ///< its force over the speed is steeper than any number at rest
   bool jumps = false;      ///< its law has a step there, and so no tangent
+
+  /// True when nothing is surely there.
+  bool is_nothing() const noexcept {
+    return !acts && !jumps && stiffness == 0.0 && viscosity == 0.0 && tension == 0.0;
+  }
 };
 
 Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point);

@@ -11,7 +11,6 @@
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/limit_weights.h"
-#include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/stability/step_bound.h"
@@ -108,7 +107,8 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     : root_of_inverse_mass_(static_cast<Eigen::Index>(network.mats.size())),
       medium_viscosity_(static_cast<Eigen::Index>(network.mats.size())),
       dimension_(network.dimension),
-      has_limit_(!engine::damps_implicitly(network) || !engine::solves_stiff_friction(network)) {
+      damps_implicitly_(engine::damps_implicitly(network)),
+      has_limit_(!damps_implicitly_ || !engine::solves_stiff_friction(network)) {
   for (std::size_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
     root_of_inverse_mass_[static_cast<Eigen::Index>(i)] =
@@ -124,8 +124,10 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
       add_vector_spring(link, stiffness, weights.link_viscosity * link.viscosity);
       continue;
     }
-    const bool implicit = stiffness < 0.0;  // then a compressed link has no stiffness across
-    const double tension = stiffness * (implicit ? std::max(elongation, 0.0) : elongation);
+    // A compressed link that is solved implicitly has no stiffness across, but gives way explicitly:
+    // so it counts across as one that is stretched by as much.
+    const bool implicit = stiffness < 0.0;
+    const double tension = stiffness * (implicit ? std::abs(elongation) : elongation);
     add(link.mat_a, link.mat_b, network, stiffness, tension,
         weights.link_viscosity * link.viscosity, 0.0);
   }
@@ -133,7 +135,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
   for (const engine::StateLink& link : network.state_links) {
     const Tangent tangent =
         tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
-    if (tangent.jumps) hold(link.mat_a, link.mat_b);
+    if (tangent.jumps || drives_beside_dampers(tangent)) hold(link.mat_a, link.mat_b);
     if (tangent.sticks && weights.viscosity_of_state_link(index) == 0.0) has_limit_ = false;
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
@@ -176,8 +178,8 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
     const std::uint32_t a = mat_of(set, pair.member_a);
     const std::uint32_t b = mat_of(set, pair.member_b);
     const Tangent tangent = tangent_at_start(state_machine, start_point(network, set, pair));
-    if (!tangent.acts && tangent.tension == 0.0) continue;
-    if (tangent.jumps) hold(a, b);
+    if (tangent.is_nothing()) continue;
+    if (tangent.jumps || drives_beside_dampers(tangent)) hold(a, b);
     if (on_surfaces) {
       add_at_surface(*engine::surface_of(network, a), b, network,
                      stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
@@ -211,6 +213,10 @@ void StartTangent::add_at_surface(const engine::Surface& surface, std::uint32_t 
   const double radius = std::abs(from.distance);
   const double across = turns && tension < 0.0 && radius > 0.0 ? tension / radius : 0.0;
   parts_.push_back({surface.mat, ball, from.normal, along, across, viscosity, 0.0});
+}
+
+bool StartTangent::drives_beside_dampers(const Tangent& tangent) const {
+  return damps_implicitly_ && tangent.viscosity < 0.0;
 }
 
 void StartTangent::hold(std::uint32_t a, std::uint32_t b) {

@@ -8,6 +8,7 @@
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/bend_shape.h"
+#include "sim_node/plan/stability/slope.h"
 
 namespace cordis::plan {
 
@@ -16,7 +17,7 @@ namespace cordis::plan {
 /// start, as far as they pull or push there. The weights are those of its integrator at its step
 /// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out. The ends of a law
 /// that has a step at the start, such as dry friction, count as held: small movements may not begin
-/// there.
+/// there. So do those of a law that drives the motion beside implicit dampers: its limit is not known.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {
@@ -60,6 +61,8 @@ class StartTangent {
   void add_at_surface(const engine::Surface& surface, std::uint32_t ball,
                       const engine::NetworkDescription& network, double along, double tension,
                       double viscosity);
+  /// True for a law that drives the motion beside implicit dampers.
+  bool drives_beside_dampers(const Tangent& tangent) const;
   void hold(std::uint32_t a, std::uint32_t b);
   void add_vector_spring(const engine::Link& link, double stiffness, double viscosity);
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
@@ -74,6 +77,7 @@ class StartTangent {
   Eigen::RowVectorXd root_of_inverse_mass_;
   Eigen::RowVectorXd medium_viscosity_;  // per MAT
   int dimension_;
+  bool damps_implicitly_;
   bool has_limit_;
 };
 
