@@ -26,6 +26,13 @@ bool is_take(const std::string& word) {
 }
 
 std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::string& file) {
+  std::error_code ignored;
+  const std::string unfinished = file + ".part";
+  if (!std::filesystem::exists(file, ignored) && std::filesystem::exists(unfinished, ignored)) {
+    throw UsageError("there is no " + file + ", but " + unfinished +
+                     ", which no recorder has closed: `cordis recover " + unfinished +
+                     "` repairs it, unless it is still recorded");
+  }
   try {
     auto reader = std::make_unique<mcap::Reader>(file);
     if (!reader->is_whole())

@@ -26,7 +26,7 @@ inline const std::vector<ControlVerb>& control_verbs() {
       {msg::VERB_SET, "set", "NAME.PARAMETER=VALUE ...",
        "Change parameters of liaisons, named links or the world"},
       {msg::VERB_STATE, "state", "LINKS STATE", "Put links into a state"},
-      {msg::VERB_GET, "get", "NAME[.PARAMETER] ...", "Say what parameters are now"},
+      {msg::VERB_GET, "get", "[NAME[.PARAMETER] ...]", "Say what parameters are now"},
       {msg::VERB_SEEK, "seek", "TIME", "Go to this time of a take that is played"},
       {msg::VERB_RATE, "rate", "RATE",
        "Play so many times as fast as recorded, or as in real time: 0.01 to 1"},

@@ -43,18 +43,20 @@ int get(const GetWords& words) {
 
 void add_get_verb(CommandLine& line) {
   auto words = std::make_shared<GetWords>();
-  Verb& verb = line.verb("get", "FILE|SESSION NAME[.PARAMETER] ... [options]",
+  Verb& verb = line.verb("get", "FILE|SESSION [NAME[.PARAMETER] ...] [options]",
                          "Ask a running session for its parameters");
   verb.required_word("FILE|SESSION", words->target.session,
                      "The launch file, or the name of the session");
   verb.more_words("NAME[.PARAMETER]", words->names,
-                  "A liaison or named links, with a parameter or not");
+                  "A liaison or named links, with a parameter or not; all without a name");
   add_session_options(verb, words->target);
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");
   verb.examples(
-      "One line for each value, as `cordis ctl SESSION set` takes it.\n"
+      "One line for each value, as `cordis ctl SESSION set` takes it. Without a name all that the\n"
+      "scene has.\n"
       "Exit code: 0 done, 1 no answer, 2 no such parameter or bad command line.\n\n"
       "Examples:\n"
+      "  cordis get plucked_string\n"
       "  cordis get plucked_string finger.stiffness_n_per_m\n"
       "  cordis get plucked_string finger\n");
   verb.action([words] { return get(*words); });

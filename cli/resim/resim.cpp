@@ -108,6 +108,7 @@ ResimResult resimulate(const ResimOptions& options) {
     result.scenes += batch.scene().size();
     for (const msg::InputEvent& event : batch.event()) {
       if (sim::verb_of(event.kind())) ++result.commands;
+      if (event.kind() == msg::INPUT_RESET) ++result.scenes;
     }
     resimulation.play(batch);
   } while (resimulation.gap().empty() && take.next(batch));

@@ -27,7 +27,7 @@ struct ResimResult {
   FrameFindings findings;
   std::vector<FrameCheck::Computed> computed;
   std::string scene;       ///< name of the last one
-  std::size_t scenes = 0;  ///< scenes of the take: the first one and those that were loaded
+  std::size_t scenes = 0;  ///< as `export` counts: the first one, each load and each reset
   msg::InputClock clock = msg::PACE_REALTIME;
   std::string engine_version;  ///< engine that wrote the take
   std::uint32_t hash_version = 0;

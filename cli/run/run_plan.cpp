@@ -108,6 +108,7 @@ RunPlan plan_run(const config::Launch& launch, const RunOptions& options,
   for (PlannedNode& node : plan.nodes) {
     node.command.stop_stage = role_of(node.program).stop_stage;
     node.command.drives_motors = node.program == "device_node";
+    node.command.writes_takes = node.program == "record_node";
     node.command.words = {programs / node.program, launch.file, "--name", node.name};
     node.command.words.insert(node.command.words.end(), words.begin(), words.end());
   }

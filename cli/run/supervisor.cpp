@@ -28,7 +28,7 @@ class Supervision {
       const auto sink = [this, index = lives_.size()](Stream stream, std::string_view text) {
         watcher_.line(index, stream, text);
       };
-      const int orphan_signal = command.drives_motors ? SIGTERM : SIGKILL;
+      const int orphan_signal = command.drives_motors || command.writes_takes ? SIGTERM : SIGKILL;
       lives_.push_back(
           std::make_unique<NodeLife>(command.words, command.respawn, orphan_signal, sink));
     }

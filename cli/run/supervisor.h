@@ -17,6 +17,7 @@ struct Command {
   std::vector<std::string> words;  ///< path of the program, then its arguments
   int stop_stage = 0;              ///< the smallest is stopped first
   bool drives_motors = false;      ///< it gets StopPlan::kLastFade to let go, whoever ends it
+  bool writes_takes = false;       ///< it closes its take when the launcher is killed
   bool respawn = false;            ///< it starts again when it dies, as NodeLife says
 };
 

@@ -93,9 +93,10 @@ void add_simulate_verb(CommandLine& line) {
               "How many threads share a step: 1 to 256, or auto, which measures at the start "
               "whether several are faster [auto]");
   verb.examples(
-      "The devices of a launch file play with the drivers mock and script; the result is that of\n"
-      "`cordis run` in lockstep, bit for bit. Columns are the time, the signals, the position and\n"
-      "the force of each axis of a device, and the MATs of --mat, with their units in the header.\n"
+      "The devices of a launch file play with the drivers mock, script and replay. The result is\n"
+      "that of `cordis run` in lockstep, bit for bit. Columns are the time, the signals, the\n"
+      "position and the force of each axis of a device, and the MATs of --mat, with their units\n"
+      "in the header.\n"
       "Ctrl-C, and a scene that diverges, keep what was simulated.\n"
       "Exit code: 0 all well, 1 stopped, diverged or disk full, 2 bad file or command line.\n\n"
       "Examples:\n"

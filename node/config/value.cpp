@@ -142,9 +142,21 @@ std::string Value::described() const {
   return quoted;
 }
 
+namespace {
+
+/// A mapping whose `kind` is another one is replaced as a whole, for its keys differ.
+bool is_of_another_kind(const Value& base, const Value& over) {
+  const Value before = base.find("kind");
+  const Value now = over.find("kind");
+  return before.exists() && now.exists() && before.text() != now.text();
+}
+
+}  // namespace
+
 Value overlay(const Value& base, const Value& over) {
   if (!over.exists()) return base;
   if (base.kind() != Value::Kind::kMapping || over.kind() != Value::Kind::kMapping) return over;
+  if (is_of_another_kind(base, over)) return over;
   std::vector<Value::Entry> entries = base.entries();
   for (const Value::Entry& entry : over.entries()) {
     const auto same = std::find_if(entries.begin(), entries.end(),

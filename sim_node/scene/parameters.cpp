@@ -79,6 +79,14 @@ Outcome unknown_parameter(const std::string& name, const std::string& parameter,
   return refused("'" + name + "' has no parameter '" + parameter + "'", hint);
 }
 
+/// A name that is similar, or that goes on behind a dot: the coupling of a port.
+std::string hint_for(const std::string& name, const std::vector<std::string>& known) {
+  const auto longer = std::ranges::find_if(
+      known, [&](const std::string& other) { return other.starts_with(name + "."); });
+  if (!name.empty() && longer != known.end()) return "did you mean '" + *longer + "'?";
+  return config::did_you_mean(name, known);
+}
+
 }  // namespace
 
 void apply(const Change& change, engine::NetworkDescription& network) {
@@ -162,8 +170,7 @@ Outcome Parameters::set(const std::string& name, const std::string& parameter, d
   if (std::find(known.begin(), known.end(), name) != known.end())
     return set_of_links(name, parameter, value);
   if (name == kWorld) return set_of_world(parameter, value);
-  return refused("no liaison and no links are named '" + name + "'",
-                 config::did_you_mean(name, names()));
+  return refused("no liaison and no links are named '" + name + "'", hint_for(name, names()));
 }
 
 Outcome Parameters::set_of_liaison(const std::string& name, const std::string& parameter,
@@ -315,7 +322,7 @@ Parameters::Values Parameters::get(const std::string& what) const {
   const std::string name = is_known(what) || dot == std::string::npos ? what : what.substr(0, dot);
   if (!is_known(name)) {
     found.problem = "no liaison and no links are named '" + name + "'";
-    found.hint = config::did_you_mean(name, known);
+    found.hint = hint_for(name, known);
     return found;
   }
   std::vector<std::string> words;

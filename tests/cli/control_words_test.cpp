@@ -24,7 +24,8 @@ TEST(ControlWords, LeaveACommandWithoutWordsAlone) {
   for (const auto& [word, verb] : {std::pair{"pause", msg::VERB_PAUSE},
                                    {"resume", msg::VERB_RESUME},
                                    {"reset", msg::VERB_RESET},
-                                   {"step", msg::VERB_STEP}}) {
+                                   {"step", msg::VERB_STEP},
+                                   {"get", msg::VERB_GET}}) {
     const ControlWords command = read_control_words(word, {});
     EXPECT_EQ(command.verb, verb);
     EXPECT_EQ(command.argument, "");

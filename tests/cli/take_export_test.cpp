@@ -397,6 +397,19 @@ TEST_F(TakeExport, NeverWritesOverTheTake) {
   EXPECT_EQ(text_of("take.mcap"), before);
 }
 
+TEST_F(TakeExport, NamesTheTakeThatNoRecorderHasClosed) {
+  std::filesystem::rename(path("take.mcap"), path("take.mcap.part"));
+  for (const std::string verb : {"export", "info", "echo"}) {
+    CommandLine line("cordis", "", "0");
+    add_verbs(line);
+    std::string out;
+    std::string error;
+    EXPECT_EQ(run_captured(line, {verb, path("take.mcap")}, out, error), kBadInput);
+    EXPECT_THAT(error, testing::HasSubstr("there is no " + path("take.mcap") + ", but "));
+    EXPECT_THAT(error, testing::HasSubstr("`cordis recover " + path("take.mcap.part") + "`"));
+  }
+}
+
 TEST_F(TakeExport, TakesAPartOfTheTime) {
   const mcap::Reader take(path("take.mcap"));
   ExportOptions options;

@@ -65,6 +65,11 @@ TEST(Overlay, MergesMappingsAndReplacesTheRest) {
             "{a: 1, b: {c: 2, d: [3], e: 4}, f: 5}");
   EXPECT_EQ(shown(overlay(base, value_of("b: 7\n"))), "{a: 1, b: 7}");
   EXPECT_EQ(shown(overlay(base, Value{})), shown(base));
+  const Value gesture = value_of("gesture: {kind: press, depth_m: 2}\nfinger: {mass_kg: 1}\n");
+  EXPECT_EQ(shown(overlay(gesture, value_of("gesture: {kind: hold, at_m: 3}\n"))),
+            "{gesture: {kind: hold, at_m: 3}, finger: {mass_kg: 1}}");
+  EXPECT_EQ(shown(overlay(gesture, value_of("gesture: {kind: press, in_s: 3}\n"))),
+            "{gesture: {kind: press, depth_m: 2, in_s: 3}, finger: {mass_kg: 1}}");
   EXPECT_EQ(shown(overlay(Value{}, base)), shown(base));
 }
 

@@ -221,6 +221,11 @@ TEST_P(Control, GetSaysWhatParametersAreNow) {
   expect_done({"load", "stiff.yaml"}, "sim: ");
   EXPECT_EQ(get("wall").output, "wall.stiffness_n_per_m = 400\n");
 
+  ChildProcess all({program_path("cordis"), "get", session_.launch_file(), "--timeout", "60s"});
+  EXPECT_EQ(all.wait(kPatience), 0);
+  EXPECT_NE(all.output().find("wall.stiffness_n_per_m = 400\n"), std::string::npos) << all.output();
+  EXPECT_NE(all.output().find("world."), std::string::npos) << all.output();
+
   const Outcome mistyped = get("wal");
   EXPECT_EQ(mistyped.code, 2);
   EXPECT_NE(mistyped.output.find("did you mean 'wall'?"), std::string::npos) << mistyped.output;

@@ -336,6 +336,23 @@ TEST(RecordPlay, SaysWhereTheTakeGoesWhenItsNameIsTaken) {
   fs::remove_all(folder);
 }
 
+TEST(RecordPlay, ClosesTheTakeWhenTheLauncherIsKilled) {
+  const fs::path folder = fresh_folder("orphan");
+  const std::string take = (folder / "take.mcap").string();
+  ChildProcess run(
+      {kCordis, "run", kLaunch, domain_word(), "--only", "sim,record", "--record", take});
+  ASSERT_TRUE(eventually([&] {  // its scene plays
+    return fs::exists(take + ".part") && fs::file_size(take + ".part") > 20'000;
+  })) << run.output();
+
+  run.signal(SIGKILL);
+
+  EXPECT_EQ(run.wait(kPatience), 128 + SIGKILL);
+  ASSERT_TRUE(eventually([&] { return fs::exists(take); }));
+  EXPECT_TRUE(mcap::Reader(take).is_whole());
+  fs::remove_all(folder);
+}
+
 TEST(RecordPlay, RefusesWhatIsNoTakeInOneSentence) {
   ChildProcess player({kCordis, "play", kLaunch});
   EXPECT_EQ(player.wait(kPatience), 2) << player.output();

@@ -169,6 +169,17 @@ matter: {bob: {kind: mass, mass_kg: 1, at_m: 0}}
   EXPECT_TRUE(parameters.get("world").entries.empty());
 }
 
+TEST(Parameters, OfAPortAreFoundBehindADot) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(1,
+                                                               R"(
+matter: {bob: {kind: mass, mass_kg: 1, at_m: 0}}
+ports: {key: {device: hand, axes: [0], role: mass, at_m: 0}}
+)"));
+  Parameters parameters(scene);
+  EXPECT_EQ(parameters.get("key").hint, "did you mean 'key.coupling'?");
+  EXPECT_EQ(parameters.set("key", "stiffness_n_per_m", 1.0).hint, "did you mean 'key.coupling'?");
+}
+
 TEST(Parameters, OfLinksCalledWorldAreThoseOfTheLinks) {
   const auto scene = std::make_shared<const Scene>(sound_scene(1,
                                                                R"(
