@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -291,6 +292,58 @@ TEST(Energy, OfStarsThatPullByAnExpressionIsKept) {
       EXPECT_GT(world.energy().kinetic, 60.0) << "they meet";
     }
   }
+}
+
+/// A bob of 0.1 kg on a rod of 1e5 N/m that is 0.3 m long, and falls to the side.
+NetworkDescription bob_on(const Term& tension) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 2e-4;
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3(0.18, -0.24, 0))};
+  LinkState rod;
+  rod.elasticity = expression_law(tension);
+  scene.state_machines = {Behaving().state(rod).state_machine};
+  scene.state_links = {{0, 1, 0, 0.3}};
+  return scene;
+}
+
+TEST(Energy, OfAnExpressionOfTheDistanceIsZeroWhereItPullsNothing) {
+  const Term d = q(Quantity::kDistance);
+  World of_elongation = make_world(bob_on(1e5 * q(Quantity::kElongation)));
+  World of_distance = make_world(bob_on(1e5 * (d - 0.3)));
+  for (int n = 0; n < 5000; ++n) {
+    of_elongation.step();
+    of_distance.step();
+    if (n % 100 != 0) continue;
+    const Energy expected = of_elongation.energy();
+    const Energy energy = of_distance.energy();
+    ASSERT_EQ(of_distance.state_hash(), of_elongation.state_hash());
+    ASSERT_NEAR(energy.elastic, expected.elastic, 1e-9);
+    ASSERT_NEAR(energy.largest, expected.largest, 1e-9) << "not 4500 J, from the distance 0 on";
+  }
+}
+
+TEST(Energy, OfAnExpressionIsCountedFromWhereItsTensionVanishes) {
+  const Term d = q(Quantity::kDistance);
+  const auto zero_of = [](const Term& tension, double rest_length) {
+    const engine::Expression law{tension.program};
+    std::set<double> zeros;
+    for (const double distance : {0.01, 0.1, 0.37, 5.0}) {
+      zeros.insert(law.distance_of_no_potential({distance, distance - rest_length, 0.0, 1.0, 1.0}));
+    }
+    EXPECT_LT(*zeros.rbegin() - *zeros.begin(), 1e-12) << "one zero for all distances";
+    return *zeros.begin();
+  };
+  EXPECT_NEAR(zero_of(1e5 * (d - 0.3), 0.0), 0.3, 1e-12);
+  EXPECT_NEAR(zero_of(1e5 * (d - 0.3), 0.3), 0.3, 1e-12);
+  EXPECT_NEAR(zero_of(1e5 * (d - 0.3), -0.3), 0.0, 0.0) << "no zero on that side";
+  EXPECT_NEAR(zero_of((d - 0.1) * (d - 1.0), 0.15), 0.1, 1e-12);
+  EXPECT_NEAR(zero_of((d - 0.1) * (d - 1.0), 0.7), 1.0, 1e-12);
+  EXPECT_EQ(zero_of(2.0 + d, 0.3), 0.0) << "it pulls everywhere";
+  EXPECT_EQ(zero_of(1.0 / (d * d), 0.3), 1.0) << "nor has it a value at 0";
+  EXPECT_EQ(zero_of(1.0 / (d - 0.3), 0.2), 0.0) << "a pole is no zero";
+  EXPECT_EQ(zero_of(1.0 / (d - 0.5), 0.5), 0.0) << "a pole is no zero";
 }
 
 TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {

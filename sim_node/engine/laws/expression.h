@@ -34,8 +34,8 @@ struct Expression {
   void check(const std::string& name) const;
   /// True when all of the tension is the slope of a potential: it does not ask for the speed.
   bool is_potential() const noexcept { return !asks_for(program, Quantity::kSpeed); }
-  /// Energy of the tension at rest, by quadrature: 0 at the elongation 0; when that is not asked for, at the
-  /// distance 0, or at 1 m of a law that has no value there [J].
+  /// Energy of the tension at rest, by quadrature [J]: 0 at the elongation 0; when that is not asked for, where
+  /// it pulls nothing nearest to the rest length, else at the distance 0, else at 1 m.
   double potential(const LawPoint& link) const noexcept;
   /// The distance at which that is 0 [m].
   double distance_of_no_potential(const LawPoint& link) const noexcept;
