@@ -2,11 +2,13 @@
 #include "sim_node/plan/reach_limit.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <variant>
 
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/stretch.h"
 
 namespace cordis::plan {
 namespace {
@@ -19,10 +21,24 @@ bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) 
   return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
 }
 
-/// The energy up to which a liaison was followed within its reach [J].
-double energy_followed(const engine::StateMachine& state_machine, const Reach& reach) {
-  double energy = energy_at(reach);
+/// The energy up to which a state was followed within its reach [J].
+double energy_followed(const engine::LinkState& state, double rest_length, bool turns,
+                       const Reach& reach) {
+  const double energy = energy_at(reach);
+  if (!is_none(state.dissipation)) return energy;
+  if (is_none(state.elasticity)) return std::numeric_limits<double>::infinity();
+  if (reach.force == 0.0) return energy;
+  const Stretch stretch = stretch_within(state, rest_length, turns, reach);
+  if (!stretch.confined) return energy;
+  return energy + work_of_forces(reach, std::min(stretch.longer, stretch.shorter));
+}
+
+/// Likewise a liaison.
+double energy_followed(const engine::StateMachine& state_machine, double rest_length, bool turns,
+                       const Reach& reach) {
+  double energy = std::numeric_limits<double>::infinity();
   for (const engine::LinkState& state : state_machine.states) {
+    energy = std::min(energy, energy_followed(state, rest_length, turns, reach));
     const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity);
     if (balls != nullptr) energy = std::min(energy, std::max(balls->well_depth, reach.energy));
   }
@@ -34,19 +50,22 @@ ReachLimit limit_at(const NetworkDescription& network, const LiaisonGraph& graph
   const Reach reach = reach_of(network, factor);
   ReachLimit limit;
   limit.speed = reach.speed;
+  const bool turns = network.dimension > 1;
   for (const Edge& edge : graph.edges) {
     if (edge.bounded) continue;
     const engine::StateLink& link = network.state_links[edge.liaison.index];
     const Reach here = reach_between(reach, network, {edge.mat_a}, {edge.mat_b});
-    limit.energy =
-        std::min(limit.energy, energy_followed(network.state_machines[link.state_machine], here));
+    limit.energy = std::min(
+        limit.energy,
+        energy_followed(network.state_machines[link.state_machine], link.rest_length, turns, here));
   }
   for (const ContactBound& contact : graph.contacts) {
     if (contact.bounded) continue;
     const Reach here = reach_between(reach, network, contact.members, contact.others);
     const engine::SetLiaison& set = network.sets[contact.set];
-    limit.pair_energy = std::min(limit.pair_energy,
-                                 energy_followed(network.state_machines[set.state_machine], here));
+    limit.pair_energy =
+        std::min(limit.pair_energy, energy_followed(network.state_machines[set.state_machine],
+                                                    std::max(set.rest_length, 0.0), turns, here));
   }
   return limit;
 }

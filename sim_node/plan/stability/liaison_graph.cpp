@@ -135,7 +135,7 @@ bool is_confined(const engine::StateMachine& state_machine, double rest_length, 
   const auto points = points_at(range, rest_length, reach);
   return !reach.held &&
          std::all_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
-           return stored_in(state_machine, point) > energy_at(reach);
+           return stored_in(state_machine, point) > energy_at(reach) + work_of_forces(reach, range);
          });
 }
 
@@ -182,6 +182,17 @@ double shortest_rest(const NetworkDescription& network, const engine::SetLiaison
   return std::isfinite(least) ? least : 0.0;
 }
 
+/// The longest rest length of a pair [m].
+double longest_rest(const NetworkDescription& network, const engine::SetLiaison& set) {
+  if (set.rest_length >= 0.0) return set.rest_length;
+  const auto largest_of = [&](const std::vector<std::uint32_t>& mats) {
+    double largest = 0.0;
+    for (const std::uint32_t mat : mats) largest = std::max(largest, radius_of(network, mat));
+    return largest;
+  };
+  return largest_of(set.set_p) + largest_of(set.set_q.empty() ? set.set_p : set.set_q);
+}
+
 /// What brings a pair of a set so far inwards that it turns about [J].
 double energy_of_turning(const NetworkDescription& network, const engine::SetLiaison& set,
                          const Reach& reach) {
@@ -210,12 +221,18 @@ double add_set(const NetworkDescription& network, std::uint32_t index, const Rea
   double in_all = 0.0;
   double across = 0.0;
   double nearest = set.range;
+  // Pairs that come into range begin there.
+  const double longest = longest_rest(network, set);
+  here.begins = near.are_kept() ? Interval{set.range - longest, set.range - rest} : kAnyNumber;
+  here.rests_differ = longest > rest;
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint start = start_point(network, set, pair);
     const double in_pair = stored_in(state_machine, start);
     stored = std::max(stored, in_pair);
     in_all += in_pair;
     nearest = std::min(nearest, pair.distance);
+    here.begins.low = std::min(here.begins.low, start.elongation);
+    here.begins.high = std::max(here.begins.high, start.elongation);
     if (!on_surfaces)
       across = std::max(across, stiffness_across_at(state_machine, network.dimension, start));
   }
@@ -334,19 +351,27 @@ class SlopesOfLinks {
     const auto found = known_.find(key);
     if (found != known_.end()) return found->second;
     const engine::StateMachine& machine = network_.state_machines[link.state_machine];
+    here.begins = begins_at(link);
     return known_.emplace(key, largest_slope(machine, link.rest_length, network_.dimension, here))
         .first->second;
   }
 
  private:
-  using Key = std::tuple<std::uint32_t, float, double, double, bool>;
+  using Key = std::tuple<std::uint32_t, float, double, double, bool, float>;
 
+  /// Where it begins, as far as its changes of state ask for it.
+  Interval begins_at(const engine::StateLink& link) const {
+    if (network_.state_machines[link.state_machine].is_stateless()) return {};
+    const double elongation = start_point(network_, link).elongation;
+    return {elongation, elongation};
+  }
   Reach reach_at_ends(const engine::StateLink& link) const {
     return reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
   }
-  static Key key_of(const engine::StateLink& link, const Reach& here) {
-    return {link.state_machine, static_cast<float>(link.rest_length), here.mass_a.low,
-            here.mass_b.low, here.held};
+  Key key_of(const engine::StateLink& link, const Reach& here) const {
+    return {link.state_machine, static_cast<float>(link.rest_length),
+            here.mass_a.low,    here.mass_b.low,
+            here.held,          static_cast<float>(begins_at(link).low)};
   }
 
   const NetworkDescription& network_;

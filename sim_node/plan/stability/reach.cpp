@@ -138,6 +138,10 @@ double energy_at(const Reach& reach) {
   return kSpare * (reach.brought + meeting);
 }
 
+double work_of_forces(const Reach& reach, double way) noexcept {
+  return 2.0 * reach.force * way;
+}
+
 double relative_speed(const engine::LinkState& state, const Reach& reach) {
   const double with_energy = std::sqrt(2.0 * energy_at(reach) * reach.inverse_mass);
   const double with_port = reach.held ? with_energy + reach.speed : with_energy;
@@ -184,6 +188,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     reach.energy = std::max(reach.energy, mat.mass * mat.velocity.squaredNorm());
   }
   const double driven = sum_of_drive_forces(network);
+  reach.driven = driven;
   reach.pushed = factor * driven * extent_of(network);
   reach.force = driven + weight_of(network);
   reach.brought = factor * energy + reach.pushed;

@@ -24,12 +24,16 @@ struct Reach {
   bool counts_sets = false;   ///< what sets store at the start is in `brought`
   bool held = false;          ///< a port holds an end, so that no energy limits the elongation
   double force = 0.0;         ///< force of all drives and all weights [N]
+  double driven = 0.0;        ///< force of all drives alone [N]
   double inverse_mass = 0.0;  ///< the largest 1 / m of each end, added up [1/kg]
   /// The distance from which on the liaison does nothing [m].
   double range = std::numeric_limits<double>::infinity();
   /// The first link with states whose potential falls without an end; what it brings in is not in
   /// `brought`.
   std::optional<std::uint32_t> endless = {};
+  /// Elongations at which a liaison begins in the state of its start [m].
+  Interval begins = {};
+  bool rests_differ = false;  ///< not every pair of the liaison has the same rest length
   int bisections = LinkBox{}.bisections;  ///< at most, for the slope of an expression; > 0
 };
 
@@ -46,6 +50,10 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
 /// The most energy that a liaison can take up [J]: all there is, or two MATs meeting at the speed of
 /// the reach.
 double energy_at(const Reach& reach);
+
+/// The most that forces that last bring in while a liaison gives way so far [J]: twice, for a driven one may turn
+/// about at the other end.
+double work_of_forces(const Reach& reach, double way) noexcept;
 
 /// The fastest that the ends of a liaison can part or meet in a state [m/s]: with all the energy there
 /// is, beside a port, and as far as forces that last drive them against its viscosity.

@@ -5,9 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "sim_node/plan/stability/entry.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/meeting_exit.h"
+#include "sim_node/plan/stability/stretch.h"
 
 namespace cordis::plan {
 namespace {
@@ -41,51 +44,6 @@ bool is_jump(const engine::Law& law) {
   }
   const auto* balls = std::get_if<engine::LennardJones>(&law);
   return balls != nullptr && balls->cutoff > 0.0 && balls->cutoff < kWell * balls->diameter;
-}
-
-/// How far one way a state is stretched by the energy of the reach [m], its tension summed up; infinite
-/// when a thousand times the length of its start does not take it up.
-double stretch_of(const engine::LinkState& state, double rest_length, const Reach& reach,
-                  double sign, double scale, double last) {
-  constexpr double kGrowth = 1.05;
-  constexpr double kFarthest = 1e3;
-  const auto tension = [&](double argument) {
-    const double e = sign * argument;
-    const Interval law = tension_between(state.elasticity, e + rest_length, e, reach);
-    return sign * state.stiffness * e + (sign > 0.0 ? law.low : -law.high);
-  };
-  const double energy = energy_at(reach);
-  double stored = 0.0;
-  double before = 0.0;
-  for (double argument = 1e-9 * scale; argument < kFarthest * scale; argument *= kGrowth) {
-    const double reached = std::min(argument, last);
-    stored += 0.5 * (tension(before) + tension(reached)) * (reached - before);
-    if (stored >= energy || reached >= last) return reached;
-    before = reached;
-  }
-  return kNoLimit;
-}
-
-struct Stretch {
-  double longer = 0.0;   // [m]
-  double shorter = 0.0;  // [m]
-  bool confined = true;
-};
-
-Stretch stretch_within(const engine::LinkState& state, double rest_length, bool turns,
-                       const Reach& reach) {
-  constexpr double kSmallest = 1e-3;  // [m]
-  const double scale = std::max({reach.elongation, std::abs(rest_length), kSmallest});
-  Stretch stretch;
-  const double nearest = turns ? std::max(rest_length, 0.0) : kNoLimit;
-  stretch.longer = stretch_of(state, rest_length, reach, 1.0, scale, kNoLimit);
-  stretch.shorter = stretch_of(state, rest_length, reach, -1.0, scale, nearest);
-  for (double* way : {&stretch.longer, &stretch.shorter}) {
-    stretch.confined = stretch.confined && std::isfinite(*way);
-    if (!std::isfinite(*way) || reach.held)
-      *way = std::max(scale, std::isfinite(*way) ? *way : 0.0);
-  }
-  return stretch;
 }
 
 /// Adds the slopes of an expression over the distances and speeds that can be reached.
@@ -181,6 +139,8 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     stretch = stretch_within(state, rest_length, turns, reach);
   }
   engine::LawRange spring{reach.elongation, rest_length, reach.energy};
+  if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity))
+    spring.energy += work_of_forces(reach, balls->diameter);  // on the way from the well inwards
   spring.turns = turns;
   if (is_power) spring.argument = std::max(stretch.longer, stretch.shorter);
   const double speed = relative_speed(state, reach);
@@ -270,8 +230,7 @@ engine::StateMachine start_state_alone(const engine::StateMachine& state_machine
   return alone;
 }
 
-double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
-  const engine::LinkState& state = state_machine.states[state_machine.start];
+double stored_in(const engine::LinkState& state, const engine::LawPoint& point) {
   const double e = point.elongation;
   const double tension = elastic_tension(state.elasticity, point);
   const double both = state.stiffness * e + tension;
@@ -279,6 +238,10 @@ double stored_in(const engine::StateMachine& state_machine, const engine::LawPoi
   const double in_law =
       stores_energy(state.elasticity) ? potential(state.elasticity, point) : std::abs(tension * e);
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
+}
+
+double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
+  return stored_in(state_machine.states[state_machine.start], point);
 }
 
 namespace {
@@ -308,18 +271,18 @@ Slope with_friction(const Slope& slope, const engine::StateMachine& state_machin
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
   Slope largest;
+  const std::vector<Entry> entries = entries_of(state_machine, rest_length, reach);
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
-    Slope slope = slope_of(state_machine.states[s], rest_length, dimension > 1, reach);
-    // A power is flat where it stores nothing: the energy that bounds it is that of its entry too.
-    const auto* power = std::get_if<engine::Power>(&state_machine.states[s].elasticity);
+    const engine::LinkState& state = state_machine.states[s];
+    // A power is flat at its rest: what it has where it is entered is energy, as what it is struck with.
+    const auto* power = std::get_if<engine::Power>(&state.elasticity);
     const bool is_flat_at_rest =
-        power != nullptr && power->exponent >= 1.0 && is_none(state_machine.states[s].dissipation);
-    const bool is_entered =
-        std::any_of(state_machine.exits.begin(), state_machine.exits.end(),
-                    [&](const engine::Transition& exit) {
-                      return exit.target == s &&
-                             (!is_flat_at_rest || exit.rest == engine::RestRule::kExpression);
-                    });
+        power != nullptr && power->exponent >= 1.0 && is_none(state.dissipation);
+    const Entry& entry = entries[s];
+    const bool is_entered = entry.by_a_change && (!is_flat_at_rest || std::isinf(entry.brought));
+    Reach here = reach;
+    if (is_flat_at_rest && !is_entered) here.brought += entry.brought;
+    Slope slope = slope_of(state, rest_length, dimension > 1, here);
     if (!slope.bounded && is_entered && slope.uncertainty == nullptr)
       slope.uncertainty = kBeginsAnywhere;
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
@@ -386,7 +349,8 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
       state_machine.exits,
       [](const engine::Transition& exit) { return exit.rest != engine::RestRule::kKeep; });
   const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
-  const double energy = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed;
+  const double pressed = reach.driven * std::max(rest_length - flips_at, 0.0);
+  const double energy = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed + pressed;
   for (const engine::LinkState& state : state_machine.states) {
     const Flip flip = flip_of(state, rest_length, flips_at, moves_rest, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;

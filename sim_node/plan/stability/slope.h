@@ -46,8 +46,11 @@ const char* jumps_from_behind(const engine::StateMachine& state_machine,
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
 
-/// What a liaison stores at a point in the state of its start [J], 0 where it is let go of. A force limit
-/// is not seen. Of an expression, which has no closed form, the product of its tension and elongation.
+/// What a state stores at a point [J], 0 where it is let go of. A force limit is not seen. Of an expression, which
+/// has no closed form, the product of its tension and elongation.
+double stored_in(const engine::LinkState& state, const engine::LawPoint& point);
+
+/// Likewise in the state of the start.
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point);
 
 /// The tangent of a liaison at one point without speed, in the state of its start. Where it does not act,
