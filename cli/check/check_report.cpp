@@ -110,8 +110,9 @@ std::string stability_text(const SceneCheck& check) {
   } else {
     text = fmt::format(
         "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
-        "stable in all\n",
-        check.rate_above(1.0 / stability.certified.step));
+        "stable in all{}\n",
+        check.rate_above(1.0 / stability.certified.step),
+        stability.turning.liaison ? " in which no link turns about" : "");
   }
   text += fmt::format("            step {}", seconds(stability.step));
   if (!stability.uncertainty)
@@ -125,7 +126,9 @@ std::string stability_text(const SceneCheck& check) {
         "\n            and for a hand of 1 m/s; beyond them energy is watched during the run\n";
   }
   text += turning_text(check);
-  for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
+  if (!stability.uncertainty) {
+    for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
+  }
   return text + limit_text(check);
 }
 
@@ -371,13 +374,15 @@ std::string freezing_text(double tolerance) {
 
 nlohmann::json sets_json(const SceneCheck& check) {
   nlohmann::json sets = nlohmann::json::array();
-  for (const plan::PartnerLimit& set : check.plan.stability.sets) {
+  const plan::Stability& stability = check.plan.stability;
+  for (const plan::PartnerLimit& set : stability.sets) {
+    const bool is_certified = !stability.uncertainty && !set.is_guaranteed();
     const engine::LiaisonId liaison{engine::LiaisonKind::kSet, set.set};
-    sets.push_back({{"liaison", called(scene::call_liaison(check.scene, liaison))},
-                    {"partners_at_start", set.at_start},
-                    {"certified_partners",
-                     set.is_guaranteed() ? nlohmann::json(nullptr) : nlohmann::json(set.least)},
-                    {"guaranteed", set.is_guaranteed()}});
+    sets.push_back(
+        {{"liaison", called(scene::call_liaison(check.scene, liaison))},
+         {"partners_at_start", set.at_start},
+         {"certified_partners", is_certified ? nlohmann::json(set.least) : nlohmann::json(nullptr)},
+         {"guaranteed", set.is_guaranteed()}});
   }
   return sets;
 }

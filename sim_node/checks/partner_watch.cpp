@@ -25,6 +25,7 @@ bool is_nearer(const PartnersSeen& a, const PartnersSeen& b) noexcept {
 PartnerWatch::PartnerWatch(const engine::NetworkDescription& network) {
   if (network.sets.empty()) return;
   const plan::LiaisonGraph graph = plan::liaison_graph(network);
+  if (plan::uncertainty_of(network, graph)) return;
   const bool holds = network.integrator != engine::IntegratorKind::kModal &&
                      network.step < plan::certified_bound(network, graph).step;
   for (const plan::PartnerLimit& limit : plan::partner_limits(network, graph, holds)) {

@@ -23,7 +23,7 @@ struct PartnersSeen {
 };
 
 /// Holds the partners of every step against plan::partner_limits(), of which the certificate of the
-/// step depends.
+/// step depends. Nothing is watched where the scene is not certain with any number of them.
 class PartnerWatch {
  public:
   explicit PartnerWatch(const engine::NetworkDescription& network);
@@ -39,7 +39,7 @@ class PartnerWatch {
   bool is_passed() const noexcept { return passed_; }
 
   /// The set that has come nearest to its number, or farthest beyond it; none where geometry
-  /// guarantees the numbers of all sets.
+  /// guarantees the numbers of all sets, and where nothing is certified.
   std::optional<PartnersSeen> nearest() const noexcept;
 
  private:

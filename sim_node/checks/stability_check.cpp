@@ -58,10 +58,12 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
   if (stability.uncertainty) uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
   const std::string why =
       stability.uncertainty ? uncertain.name + ": " + stability.uncertainty->why : std::string();
-  const std::string hint = stability.uncertainty
-                               ? "no rate_hz is certain: " + why
-                               : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
-                                     " is stable in every pose and state";
+  const std::string hint =
+      stability.uncertainty
+          ? "no rate_hz is certain: " + why
+          : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
+                " is stable in every pose and state" +
+                (stability.turning.liaison ? " in which no link turns about" : "");
   if (!stability.diverges() && stability.uncertainty) {
     problems.warning(
         uncertain.place,

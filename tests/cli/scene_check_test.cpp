@@ -236,6 +236,80 @@ links:
   EXPECT_EQ(out_.find("no step is too long"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, AFlowThatALawHasToHoldIsNoCertainStep) {
+  const auto in_flow = [&](const std::string& speed) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: wind
+space: 1
+step: {rate_hz: 1000}
+world: {viscosity_n_s_per_m: 0.1, flow_m_per_s: [<speed>]}
+matter:
+  w: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.001, at_m: 0}
+liaisons:
+  l: {elasticity: {kind: power, coefficient: 1.0e+5, exponent: 3}}
+links:
+  - {liaison: l, between: [w, m], rest_m: 0}
+)",
+                                         {{"speed", speed}});
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    return out_.find("stable in every pose and state") != std::string::npos;
+  };
+  EXPECT_TRUE(in_flow("2"));
+  EXPECT_FALSE(in_flow("2000")) << "200 N";
+}
+
+TEST_F(Checked, ARateThatIsProposedPromisesNoMoreThanItsReport) {
+  const auto crowd = [&](const std::string& rate) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: crowd
+space: 3
+step: {rate_hz: <rate>}
+matter:
+  cloud: {kind: lattice, structure: cubic, corner_m: [0, 0, 0], counts: [5, 5, 5], spacing_m: 0.01, mass_kg: 0.001}
+liaisons:
+  hold: {kind: state_machine, stiffness_n_per_m: 100}
+links:
+  - {liaison: hold, within: cloud, rest_m: 0.02, range_m: 1}
+)",
+                                         {{"rate", rate}});
+    return run({});
+  };
+  EXPECT_EQ(crowd("3000"), kSuccess) << error_;
+  EXPECT_NE(out_.find("in every pose and state in which no link turns about"), std::string::npos);
+  EXPECT_EQ(crowd("1000"), kBadInput);
+  EXPECT_NE(
+      error_.find("a rate_hz of 3000 is stable in every pose and state in which no link turns "
+                  "about"),
+      std::string::npos)
+      << error_;
+}
+
+TEST_F(Checked, NoPartnersAreCertifiedWhereNothingIs) {
+  const auto balls = [&](const std::string& rate) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: balls
+space: 3
+step: {rate_hz: <rate>, gesture_rate_hz: 100}
+matter:
+  s: {kind: lattice, structure: cubic, corner_m: [0, 0, 0], counts: [4, 4, 4], spacing_m: 0.02, mass_kg: 0.001}
+liaisons:
+  push: {kind: state_machine, stiffness_n_per_m: 100, pulls: false}
+links:
+  - {liaison: push, within: s, rest_m: 0.01, range_m: 0.01}
+)",
+                                         {{"rate", rate}});
+    EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+    const nlohmann::json set = nlohmann::json::parse(out_)["stability"]["sets"][0];
+    const bool is_certified = !set["certified_partners"].is_null();
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    EXPECT_EQ(out_.find("touches more than") != std::string::npos, is_certified) << out_;
+    return is_certified;
+  };
+  EXPECT_TRUE(balls("1000"));
+  EXPECT_FALSE(balls("200")) << "K' = 2.5 of a touch";
+}
+
 TEST_F(Checked, WhatCollisionsGainAddsUpWhereItIsMuch) {
   const auto bounces = [&](const std::string& rate) {
     std::ofstream(path_) << test::filled(R"(cordis: 1
