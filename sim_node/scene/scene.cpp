@@ -33,8 +33,8 @@ bool check_integrator(const Scene& scene, const config::Place& place, config::Pr
 
 void check_network(const Scene& scene, const config::Place& integrator, const config::Place& matter,
                    config::Problems& problems) {
-  if (scene.network.mass_count() == 0) {
-    problems.error(matter, "the scene has no mass that can move");
+  if (scene.network.mass_count() == 0 && scene.ports.empty()) {
+    problems.error(matter, "the scene has no mass that can move, and no port");
     return;
   }
   if (!check_integrator(scene, integrator, problems)) return;

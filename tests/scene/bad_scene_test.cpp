@@ -126,17 +126,12 @@ world: {gravity_m_per_s2: ^-9.81}
 )",
                  "'gravity_m_per_s2' in world must have 2 numbers, got 1", ""},
         BadScene{kHead2, "matter: ^{a: {kind: fixed, at_m: [0, 0]}}\n",
-                 "the scene has no mass that can move", ""},
-        BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move", ""},
-        BadScene{kHead2,
-                 R"(matter: ^{}
-ports: {p: {device: d, axes: 0, role: mass, at_m: [0, 0], coupling: direct}}
-)",
-                 "the scene has no mass that can move", ""},
+                 "the scene has no mass that can move, and no port", ""},
+        BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move, and no port", ""},
         BadScene{kHead2,
                  "matter: ^{a: {kind: string, count: 2, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], "
                  "ends: fixed, stiffness_n_per_m: 1}}\n",
-                 "the scene has no mass that can move", ""},
+                 "the scene has no mass that can move, and no port", ""},
         BadScene{kHead2, "matter: ^{a: {kind: mass, mass_kg: 1.0e-320, at_m: [0, 0]}}\n",
                  "this cannot be simulated: MAT 0: mass must be large enough for the step", ""}));
 

@@ -37,6 +37,24 @@ TEST(Port, OfRoleMassIsAMatWhosePositionIsImposed) {
   EXPECT_EQ(scene.matter[1].first, 1u);
 }
 
+TEST(Port, MayBeAllThatMovesInAScene) {
+  const Scene scene = sound_scene(1,
+                                  R"(matter:
+  wall: {kind: fixed, at_m: 0}
+liaisons:
+  spring: {kind: spring, stiffness_n_per_m: 200}
+ports:
+  key: {device: keyboard, axes: [0], role: mass, at_m: 0, coupling: direct}
+links:
+  - {liaison: spring, between: [wall, key]}
+)");
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  world.impose_position(scene.ports[0].mat, Vec3(-0.01, 0, 0));
+  for (int n = 0; n < 2; ++n) world.step();
+
+  EXPECT_DOUBLE_EQ(world.link_force(scene.ports[0].mat).x(), 2.0);
+}
+
 TEST(Port, OfRoleLiaisonIsAMassThatTheDevicePushes) {
   const Scene scene = sound_scene(3,
                                   R"(matter:
