@@ -275,6 +275,64 @@ TEST(Certificate, CountsByHowMuchAPotentialFalls) {
   EXPECT_LT(limit, 2.0 * std::sqrt(kMass / 9000.0));
 }
 
+/// Three masses on a line of heavy dampers, thrown so that it turns.
+NetworkDescription chain_that_turns(double viscosity) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  scene.step = 1e-3;
+  scene.gravity = Vec3(0, -9.81, 0);
+  scene.mats = {fixed(Vec3::Zero())};
+  for (std::uint32_t i = 1; i <= 3; ++i) {
+    scene.mats.push_back(mass(1e-3, Vec3(0.1 * i, 0, 0)));
+    scene.mats.back().velocity = Vec3(0, 2, 0);
+    scene.links.push_back({i - 1, i, 300.0, viscosity, 0.1});
+  }
+  return scene;
+}
+
+TEST(Certificate, IsNotGivenToStiffHeavyDampersThatTurn) {
+  const auto gain_of = [](const NetworkDescription& scene) {
+    World world = make_world(scene);
+    const double begin = world.energy().total();
+    double largest = begin;
+    for (int n = 0; n < 2000; ++n) {
+      world.step();
+      largest = std::max(largest, world.energy().total());
+    }
+    return largest / begin;
+  };
+  const NetworkDescription light = chain_that_turns(2.0);  // K' Z' = 0.6 * 4
+  EXPECT_FALSE(stability_at_start(light).uncertainty.has_value());
+  EXPECT_LT(gain_of(light), 1.02);
+
+  NetworkDescription heavy = chain_that_turns(20.0);
+  EXPECT_GT(gain_of(heavy), 1.3);
+  EXPECT_NE(why_uncertain(heavy).find("as it turns"), std::string::npos);
+  EXPECT_FALSE(stability_at_start(heavy).diverges());
+  heavy.dimension = 1;  // nothing turns there
+  heavy.gravity = Vec3::Zero();
+  for (Mat& mat : heavy.mats) mat.velocity = Vec3::Zero();
+  EXPECT_FALSE(stability_at_start(heavy).uncertainty.has_value());
+}
+
+TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {mass(0.01, Vec3::Zero()), mass(0.01, Vec3(0.2, 0, 0))};
+  scene.state_machines = {state_machine(1000.0)};
+  scene.state_machines[0].states[0].pulls = false;
+  engine::SetLiaison set;
+  set.set_p = {0, 1};
+  set.rest_length = 0.1;
+  set.range = 0.1;
+  scene.sets = {set};
+  EXPECT_FALSE(stability_at_start(scene).uncertainty.has_value());
+  scene.sets[0].range = 0.095;  // 5 N, a slow ball is thrown off with them
+  EXPECT_EQ(why_uncertain(scene), "its force jumps at its range");
+}
+
 TEST(Certificate, OfAChoiceOfTheRateIsNotGivenEither) {
   NetworkDescription scene = mass_at(Vec3(1, 0, 0), 1, 200.0);
   join(scene, state_machine(0.0, engine::Table({-10.0, 10.0}, {100.0, 100.0})), 0.0);

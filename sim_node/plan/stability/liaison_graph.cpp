@@ -109,13 +109,13 @@ std::array<engine::LawPoint, 4> points_at(double distance, double rest_length, c
           point(reach.mass_a.high, reach.mass_b.low), point(reach.mass_a.high, reach.mass_b.high)};
 }
 
-constexpr double kJump = 0.1;
-constexpr double kJumpOfSurfaces = 1e-3;  // slow balls come to them over and over
-
 /// True if a pair in the state of its start still pulls or pushes where it crosses its range, with
-/// more than this share of what the largest slope of that state would over the whole range.
+/// more than a share of what the largest slope of that state would over the whole range. What is slow comes to
+/// surfaces, and to what pushes it away, over and over, and is thrown off each time as if it had come fast.
 bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
-                    int dimension, const Reach& reach, double share) {
+                    int dimension, const Reach& reach, bool on_surfaces) {
+  constexpr double kJump = 0.1;
+  constexpr double kJumpOfSlow = 1e-3;
   constexpr double kJustWithin = 1.0 - 1e-9;
   const engine::StateMachine start = start_state_alone(state_machine);
   const engine::LinkState& state = start.states[0];
@@ -125,6 +125,7 @@ bool jumps_at_range(const engine::StateMachine& state_machine, double rest_lengt
     const double tension =
         std::clamp(state.stiffness * point.elongation + elastic_tension(state.elasticity, point),
                    state.pushes ? -state.force_limit : 0.0, state.pulls ? state.force_limit : 0.0);
+    const double share = on_surfaces || tension < 0.0 ? kJumpOfSlow : kJump;
     return std::abs(tension) > share * slope * range;
   });
 }
@@ -257,7 +258,7 @@ double add_set(const NetworkDescription& network, std::uint32_t index, const Rea
   if (!graph.uncertainty &&
       !(all_begin_within && is_confined(state_machine, rest, set.range, here)) &&
       jumps_at_range(state_machine, rest, set.range, on_surfaces ? 1 : network.dimension, here,
-                     on_surfaces ? kJumpOfSurfaces : kJump))
+                     on_surfaces))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
