@@ -92,21 +92,27 @@ std::string turning_text(const SceneCheck& check) {
 
 std::string stability_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
+  const double certain = check.plan.certain_step;
+  const bool is_any_certain = certain > 0.0;
   std::string text;
   if (stability.holds()) {
     text = fmt::format(
         "stability   stable in every pose and state{}{}: margin {:.4g} % of stiffness\n",
         stability.turning.liaison ? " in which no link turns about" : "",
-        is_guaranteed(stability) ? "" : " with the partners below", 100.0 * stability.margin());
+        is_guaranteed(stability) ? "" : " with the partners below", 100.0 * check.plan.margin());
   } else if (stability.diverges()) {
-    text = fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
-                       check.rate_above(1.0 / stability.certified.step));
+    text =
+        fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
+                    check.rate_above(1.0 / (is_any_certain ? certain : stability.certified.step)));
   } else if (stability.uncertainty) {
     text = fmt::format(
         "stability   not certain: {}: {};\n            energy and K' + 2 Z' are watched during "
-        "the run\n",
+        "the run{}\n",
         scene::call_liaison(check.scene, stability.uncertainty->liaison).name,
-        stability.uncertainty->why);
+        stability.uncertainty->why,
+        is_any_certain
+            ? fmt::format("; a rate_hz of {:.0f} is certain", check.rate_above(1.0 / certain))
+            : "");
   } else {
     text = fmt::format(
         "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
@@ -115,8 +121,7 @@ std::string stability_text(const SceneCheck& check) {
         stability.turning.liaison ? " in which no link turns about" : "");
   }
   text += fmt::format("            step {}", seconds(stability.step));
-  if (!stability.uncertainty)
-    text += fmt::format("; certified up to {}", seconds(stability.certified.step));
+  if (is_any_certain) text += fmt::format("; certified up to {}", seconds(certain));
   text += std::isfinite(stability.diverging_step)
               ? fmt::format(", surely unstable beyond {}\n", seconds(stability.diverging_step))
               : "\n";
@@ -428,9 +433,9 @@ std::string json_of(const SceneCheck& check) {
                       {"stability",
                        {{"verdict", verdict(stability)},
                         {"step_s", stability.step},
-                        {"certified_step_s", finite(stability.certified.step)},
+                        {"certified_step_s", finite(check.plan.certain_step)},
                         {"diverging_step_s", finite(stability.diverging_step)},
-                        {"margin", stability.margin()},
+                        {"margin", finite(check.plan.margin())},
                         {"bounded_laws", stability.bounded},
                         {"turns_at_j", finite(stability.turning.energy)},
                         {"may_turn", stability.turning.liaison.has_value()},

@@ -52,18 +52,21 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
   const config::Place& place = bound.liaison ? liaison.place : mass.place;
   const long rate = std::lround(scene.step_rate_hz);
   const double per_tick = scene.gesture_rate_hz;
-  const double stable_rate = (std::floor(1.0 / (bound.step * per_tick)) + 1.0) * per_tick;
+  const double certain =
+      stability.uncertainty
+          ? plan::certain_step_of(scene.network, plan::liaison_graph(scene.network), stability)
+          : bound.step;
+  const double stable_rate = (std::floor(1.0 / (certain * per_tick)) + 1.0) * per_tick;
   const std::string limit = liaison.name + " at the mass " + mass.name + " sets the limit";
   scene::Called uncertain;
   if (stability.uncertainty) uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
   const std::string why =
       stability.uncertainty ? uncertain.name + ": " + stability.uncertainty->why : std::string();
   const std::string hint =
-      stability.uncertainty
-          ? "no rate_hz is certain: " + why
-          : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
-                " is stable in every pose and state" +
-                (stability.turning.liaison ? " in which no link turns about" : "");
+      certain == 0.0 ? "no rate_hz is certain: " + why
+                     : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
+                           " is stable in every pose and state" +
+                           (stability.turning.liaison ? " in which no link turns about" : "");
   if (!stability.diverges() && stability.uncertainty) {
     problems.warning(
         uncertain.place,

@@ -210,8 +210,8 @@ std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription&
 
 }  // namespace
 
-double Stability::margin() const noexcept {
-  const double share = step / certified.step;
+double Plan::margin() const noexcept {
+  const double share = stability.step / certain_step;
   return 1.0 - share * share;
 }
 
@@ -288,6 +288,30 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   return stability;
 }
 
+double certain_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
+                       const Stability& stability) {
+  constexpr double kJustBelow = 1.0 - 1e-9;
+  constexpr double kShortest = 1e-3;
+  constexpr int kHalvings = 30;
+  const double longest = stability.certified.step;
+  if (graph.uncertainty || !(longest > 0.0)) return 0.0;
+  if (!std::isfinite(longest)) return stability.uncertainty ? 0.0 : longest;
+  engine::NetworkDescription varied = network;
+  const auto is_certain = [&](double step) {
+    varied.step = step;
+    return !uncertainty_of(varied, graph);
+  };
+  if (is_certain(kJustBelow * longest)) return longest;
+  double low = stability.holds() ? network.step : kShortest * longest;
+  if (!is_certain(low)) return 0.0;
+  double high = longest;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = std::sqrt(low * high);
+    (is_certain(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz) {
   // A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the
@@ -356,8 +380,10 @@ double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGrap
 
 Plan plan_of(const engine::NetworkDescription& network, double band_hz) {
   const LiaisonGraph graph = liaison_graph(network);
-  return {stability_of(network, graph), band_edge_of(network, graph, band_hz),
-          worst_contact_of(network, graph)};
+  Plan plan{stability_of(network, graph), band_edge_of(network, graph, band_hz),
+            worst_contact_of(network, graph)};
+  plan.certain_step = certain_step_of(network, graph, plan.stability);
+  return plan;
 }
 
 }  // namespace cordis::plan

@@ -39,8 +39,6 @@ struct Stability {
 
   bool holds() const noexcept { return step < certified.step && !uncertainty; }
   bool diverges() const noexcept { return step > diverging_step; }
-  /// 1 - (step / certified)^2: the part of the largest stiffness that may still be added.
-  double margin() const noexcept;
 };
 
 Stability stability_of(const engine::NetworkDescription& network, const LiaisonGraph& graph);
@@ -52,6 +50,11 @@ double swing_of(engine::IntegratorKind integrator, double part) noexcept;
 /// Stability::uncertainty alone, without the two limits. O(liaisons).
 std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
                                           const LiaisonGraph& graph);
+
+/// The longest step up to which the scene is certified, and nothing in it uncertain [s]. At most the certified one;
+/// 0 where not even a thousandth of that is certain. O(liaisons).
+double certain_step_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
+                       const Stability& stability);
 
 /// The errors of a vibration at the upper end of the band that matters, with at most this
 /// viscosity.
@@ -98,6 +101,10 @@ struct Plan {
   Stability stability;
   BandEdge band_edge;
   std::optional<ContactGain> worst_contact;
+  double certain_step = 0.0;  ///< see certain_step_of() [s]
+
+  /// 1 - (step / certain step)^2: the part of the largest stiffness that may still be added.
+  double margin() const noexcept;
 };
 
 /// O(liaisons): below a second for 100 000 of them.

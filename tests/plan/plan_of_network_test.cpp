@@ -28,7 +28,7 @@ TEST(Plan, DistinguishesStableFromUnstable) {
   const Plan stable = plan_of(oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 0.01), 1.0);
   EXPECT_TRUE(stable.stability.holds());
   EXPECT_FALSE(stable.stability.diverges());
-  EXPECT_NEAR(stable.stability.margin(), 0.75, 1e-9);
+  EXPECT_NEAR(stable.margin(), 0.75, 1e-9);
 
   const Plan unstable = plan_of(oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 0.021), 1.0);
   EXPECT_FALSE(unstable.stability.holds());
@@ -118,6 +118,25 @@ TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   ASSERT_TRUE(stiff.uncertainty.has_value());
   EXPECT_EQ(stiff.uncertainty->liaison.index, 0u);
   EXPECT_TRUE(stability_at(500.0).holds());
+}
+
+TEST(Plan, NamesTheStepUpToWhichItIsCertain) {
+  engine::StateMachine thread = state_machine(2500.0);
+  thread.states[0].pushes = false;
+  NetworkDescription scene = mass_on_law(2, 0.001, Vec3(0.2, 0, 0), Vec3::Zero(), thread, 0.2);
+  const double at_one = std::sqrt(0.001 / 2500.0);  // K' = 1; certified up to K' = 4
+  for (const double part : {0.1, 0.99, 1.01, 1.5, 3.0}) {
+    scene.step = part * at_one;
+    const plan::Plan plan = plan_of(scene, 10.0);
+    EXPECT_NEAR(plan.certain_step, at_one, 1e-6 * at_one) << part;
+    EXPECT_EQ(plan.stability.holds(), part < 1.0) << part;
+  }
+  scene.state_machines[0].states[0].pushes = true;  // a spring: nothing comes and goes
+  const plan::Plan plan = plan_of(scene, 10.0);
+  EXPECT_EQ(plan.certain_step, plan.stability.certified.step);
+  scene.dimension = 1;
+  scene.state_machines[0].states[0].elasticity = engine::Power{-1e3, 3.0};  // drives the ends apart
+  EXPECT_EQ(plan_of(scene, 10.0).certain_step, 0.0);
 }
 
 TEST(Plan, IsNotCertainOfALawThatBendsTooSharplyForItsStep) {
