@@ -179,7 +179,10 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
     engine::NetworkDescription own = network;
     own.integrator = engine::integrator_named(integrator);
     integrators.push_back(integrator);
-    const plan::Stability stability = plan::stability_of(own, plan::liaison_graph(own));
+    const plan::LiaisonGraph graph = plan::liaison_graph(own);
+    plan::Stability stability = plan::stability_of(own, graph);
+    if (!stability.uncertainty)
+      stability.certified.step = plan::certain_step_of(own, graph, stability);
     report.stability[integrator] = stability;
     if (std::isfinite(stability.diverging_step)) limit = std::max(limit, stability.diverging_step);
   }
