@@ -34,6 +34,25 @@ std::optional<plan::LiaisonId> liaison_without_largest_slope(const plan::Liaison
   return found;
 }
 
+std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty) {
+  return scene::call_liaison(scene, uncertainty.liaison).name + ": " + uncertainty.why;
+}
+
+/// Which rate is stable, or why none is certain.
+std::string rate_hint(const scene::Scene& scene, const plan::Stability& stability) {
+  double step = stability.certified.step;
+  if (stability.uncertainty) {
+    step = plan::certain_step_of(scene.network, plan::liaison_graph(scene.network), stability);
+    if (step == 0.0)
+      return "no rate_hz is certain: " + uncertainty_text(scene, *stability.uncertainty);
+  }
+  const double per_tick = scene.gesture_rate_hz;
+  const double rate = (std::floor(1.0 / (step * per_tick)) + 1.0) * per_tick;
+  return "a rate_hz of " + std::to_string(std::lround(rate)) +
+         " is stable in every pose and state" +
+         (stability.turning.liaison ? " in which no link turns about" : "");
+}
+
 }  // namespace
 
 void check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
@@ -45,34 +64,23 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
                      config::Problems& problems) {
   if (stability.holds()) return;
 
+  const long rate = std::lround(scene.step_rate_hz);
+  if (!stability.diverges() && stability.uncertainty) {
+    problems.warning(scene::call_liaison(scene, stability.uncertainty->liaison).place,
+                     "at " + std::to_string(rate) +
+                         " Hz it is not certain that the scene is stable: " +
+                         uncertainty_text(scene, *stability.uncertainty),
+                     "energy and K' + 2 Z' are watched during the run");
+    return;
+  }
   const plan::StepBound& bound = stability.certified;
   const scene::Called liaison = scene::call_liaison(scene, bound.liaison);
   const scene::Called mass = scene::call_mat(scene, bound.mat);
   // The viscosity of the medium has no place of its own.
   const config::Place& place = bound.liaison ? liaison.place : mass.place;
-  const long rate = std::lround(scene.step_rate_hz);
-  const double per_tick = scene.gesture_rate_hz;
-  const double certain =
-      stability.uncertainty
-          ? plan::certain_step_of(scene.network, plan::liaison_graph(scene.network), stability)
-          : bound.step;
-  const double stable_rate = (std::floor(1.0 / (certain * per_tick)) + 1.0) * per_tick;
   const std::string limit = liaison.name + " at the mass " + mass.name + " sets the limit";
-  scene::Called uncertain;
-  if (stability.uncertainty) uncertain = scene::call_liaison(scene, stability.uncertainty->liaison);
-  const std::string why =
-      stability.uncertainty ? uncertain.name + ": " + stability.uncertainty->why : std::string();
-  const std::string hint =
-      certain == 0.0 ? "no rate_hz is certain: " + why
-                     : "a rate_hz of " + std::to_string(std::lround(stable_rate)) +
-                           " is stable in every pose and state" +
-                           (stability.turning.liaison ? " in which no link turns about" : "");
-  if (!stability.diverges() && stability.uncertainty) {
-    problems.warning(
-        uncertain.place,
-        "at " + std::to_string(rate) + " Hz it is not certain that the scene is stable: " + why,
-        "energy and K' + 2 Z' are watched during the run");
-  } else if (!stability.diverges()) {
+  const std::string hint = rate_hint(scene, stability);
+  if (!stability.diverges()) {
     problems.warning(place,
                      "at " + std::to_string(rate) +
                          " Hz the scene may be unstable in some poses or states: " + limit,

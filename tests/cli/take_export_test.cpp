@@ -153,6 +153,11 @@ class TakeExport : public testing::Test {
     inputs.sample().push_back(sample);
     put(msg::TOPIC_INPUTS, "SceneInputs", inputs);
   }
+  /// Inputs 1 to `last`, each 0.1 m farther.
+  void put_inputs(std::uint64_t last) {
+    for (std::uint64_t number = 1; number <= last; ++number)
+      put_input(number, 0.1 * static_cast<double>(number));
+  }
   /// @param sample    the sample that it answers; 0: the one with its own number
   /// @param sequence  number of the message; 0: its own number
   void put_answer(std::uint64_t number, double force, std::uint64_t sample = 0,
@@ -311,8 +316,7 @@ TEST_F(TakeExport, CallsASceneThatGaveNoAnswerNoLoss) {
 TEST_F(TakeExport, CallsAnswersThatTheSceneWithheldNoLoss) {
   begin("withheld.mcap", /*has_port=*/true);
   put_values(1, {1.0, 2.0, 3.0, 4.0, 5.0});
-  for (const std::uint64_t number : {1u, 2u, 3u, 4u, 5u})
-    put_input(number, 0.1 * static_cast<double>(number));
+  put_inputs(5);
   put_answer(1, -1.0);
   put_answer(4, -4.0, 4, /*sequence=*/2);  // answers 2 and 3 count, and none was written
   put_answer(5, -5.0, 5, /*sequence=*/3);
@@ -327,8 +331,7 @@ TEST_F(TakeExport, CallsAnswersThatTheSceneWithheldNoLoss) {
 TEST_F(TakeExport, CountsAnswersThatAreLostWhereTheSceneWasSilentToo) {
   begin("both.mcap", /*has_port=*/true);
   put_values(1, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0});
-  for (const std::uint64_t number : {1u, 2u, 3u, 4u, 5u, 6u})
-    put_input(number, 0.1 * static_cast<double>(number));
+  put_inputs(6);
   put_answer(1, -1.0, 1);
   put_answer(3, -5.0, 5);                // of samples 2, 3 and 4 one was answered
   put_sample(6, /*received_answer=*/4);  // the device received the answer to sample 6
@@ -345,8 +348,7 @@ TEST_F(TakeExport, CountsAnswersThatAreLostWhereTheSceneWasSilentToo) {
 TEST_F(TakeExport, CountsAnswersAtTheEndThatNothingIsKnownOf) {
   begin("end.mcap", /*has_port=*/true);
   put_values(1, {1.0, 2.0});
-  put_input(1, 0.1);
-  put_input(2, 0.2);
+  put_inputs(2);
   put_answer(1, -1.0);
   EXPECT_THAT(close_and_export("end").losses,
               testing::ElementsAre("the take lacks 1 answer to devices, which are on "
@@ -356,8 +358,7 @@ TEST_F(TakeExport, CountsAnswersAtTheEndThatNothingIsKnownOf) {
 TEST_F(TakeExport, CallsAnswersBeforeTheRecorderFoundTheSceneNoLoss) {
   begin("early.mcap", /*has_port=*/true);
   put_values(1, {1.0, 2.0, 3.0});
-  for (const std::uint64_t number : {1u, 2u, 3u})
-    put_input(number, 0.1 * static_cast<double>(number));
+  put_inputs(3);
   put_answer(3, -3.0);
   const ExportResult result = close_and_export("early");
 

@@ -49,7 +49,8 @@ TEST(PhaseLog, WarnsOfNoDeviceThatAnswersWithin3Seconds) {
   const test::CapturedLog log;
   PhaseLog phases = key_log();
   miss_first_device(phases, 2900 * kMillisecond);
-  phases.note(Phase::kLost, true, 2950 * kMillisecond);  // it is there; the scene answers next
+  // The board is connected now. The scene answers later.
+  phases.note(Phase::kLost, true, 2950 * kMillisecond);
   phases.report(2950 * kMillisecond);
   phases.report(3100 * kMillisecond);
   phases.note(Phase::kRunning, true, 3200 * kMillisecond);

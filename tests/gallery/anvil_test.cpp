@@ -62,13 +62,7 @@ TEST(Anvil, IsStruckByTheLawOfHertz) {
 /// How far the hammer goes up and down while the hand leans on the anvil [m].
 double shaking_of_the_hammer(GallerySession& session) {
   session.play_until(3.0);
-  double lowest = session.signal("hammer");
-  double highest = lowest;
-  session.play_until(4.0, [&] {
-    lowest = std::min(lowest, session.signal("hammer"));
-    highest = std::max(highest, session.signal("hammer"));
-  });
-  return highest - lowest;
+  return session.range_until(4.0, "hammer");
 }
 
 TEST(AnvilAfar, ShakesUnderAFirmHandWhoseAnswersAreFourPeriodsLate) {

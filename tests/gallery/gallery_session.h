@@ -23,6 +23,17 @@ class GallerySession : public cli::OfflineSession {
                           const std::vector<std::string>& overrides = {})
       : cli::OfflineSession(std::string(CORDIS_SOURCE_DIR) + "/launch_configs/" + launch_file,
                             overrides) {}
+
+  /// Plays on to a time; from the lowest to the highest value of a signal on the way.
+  double range_until(double time_s, const std::string& name) {
+    double lowest = signal(name);
+    double highest = lowest;
+    play_until(time_s, [&] {
+      lowest = std::min(lowest, signal(name));
+      highest = std::max(highest, signal(name));
+    });
+    return highest - lowest;
+  }
 };
 
 /// The launch files of the gallery, without ending, in order.

@@ -25,13 +25,7 @@ std::optional<engine::LinkEvent> change_at(const GallerySession& session, const 
 /// Half of the way that the bob of the clock goes in its swing after 15 seconds [m].
 double swing_of_the_clock(GallerySession& session) {
   session.play_until(15.0);
-  double lowest = session.signal("bob_x");
-  double highest = lowest;
-  session.play_until(16.1, [&] {
-    lowest = std::min(lowest, session.signal("bob_x"));
-    highest = std::max(highest, session.signal("bob_x"));
-  });
-  return 0.5 * (highest - lowest);
+  return 0.5 * session.range_until(16.1, "bob_x");
 }
 
 TEST(Mechanisms, AClockGoesOnForItIsPushedOnOneWayAlone) {
