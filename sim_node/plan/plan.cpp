@@ -59,31 +59,6 @@ std::optional<std::uint32_t> bend_beside_dampers(const engine::NetworkDescriptio
   return {};
 }
 
-/// The first implicit damper that may gain energy as it turns, beside stiff springs: it is solved along its
-/// direction at the start of the step. Pendulums and chains of 1 to 30 masses gained 2 % of their energy where
-/// the product of K' and Z' was 3, and several times of it from 10 on; below it they gained less.
-std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& network,
-                                           const LiaisonGraph& graph) {
-  constexpr double kMaxProduct = 3.0;
-  if (network.dimension == 1 || !engine::damps_implicitly(network)) return {};
-  std::vector<double> stiffest(network.mats.size(), 0.0);  // K' of the links at a MAT, the largest
-  const auto normalised = [&](const Edge& edge, double value) {
-    return value * (graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
-  };
-  for (const Edge& edge : graph.edges) {
-    const double stiffness = normalised(edge, edge.stiffness) * network.step * network.step;
-    for (const std::uint32_t mat : {edge.mat_a, edge.mat_b})
-      stiffest[mat] = std::max(stiffest[mat], stiffness);
-  }
-  for (const Edge& edge : graph.edges) {
-    if (edge.liaison.kind != LiaisonKind::kLink) continue;
-    const double stiffness = std::max(stiffest[edge.mat_a], stiffest[edge.mat_b]);
-    if (stiffness * normalised(edge, edge.viscosity) * network.step > kMaxProduct)
-      return edge.liaison;
-  }
-  return {};
-}
-
 /// Step beyond which the tangent at the start diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network) {
   const auto limit_at = [](const engine::NetworkDescription& varied) {
@@ -227,10 +202,6 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
     return Uncertainty{
         LiaisonId{LiaisonKind::kBend, *damped},
         "its viscosity has Z' above 0.3 beside implicit dampers, for which no limit is known"};
-  }
-  if (const auto damper = damper_that_turns(network, graph)) {
-    return Uncertainty{
-        *damper, "it may gain energy as it turns, for the product of its K' and Z' is above 3"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
   const double touch = contact ? contact->stiffness : 0.0;

@@ -276,7 +276,7 @@ TEST(Certificate, CountsByHowMuchAPotentialFalls) {
 }
 
 /// Three masses on a line of heavy dampers, thrown so that it turns.
-NetworkDescription chain_that_turns(double viscosity) {
+NetworkDescription chain_that_turns(double stiffness, double viscosity) {
   NetworkDescription scene;
   scene.dimension = 2;
   scene.integrator = engine::IntegratorKind::kLeapfrog;
@@ -286,34 +286,27 @@ NetworkDescription chain_that_turns(double viscosity) {
   for (std::uint32_t i = 1; i <= 3; ++i) {
     scene.mats.push_back(mass(1e-3, Vec3(0.1 * i, 0, 0)));
     scene.mats.back().velocity = Vec3(0, 2, 0);
-    scene.links.push_back({i - 1, i, 300.0, viscosity, 0.1});
+    scene.links.push_back({i - 1, i, stiffness, viscosity, 0.1});
   }
   return scene;
 }
 
-TEST(Certificate, IsNotGivenToStiffHeavyDampersThatTurn) {
-  const auto gain_of = [](const NetworkDescription& scene) {
-    World world = make_world(scene);
-    const double begin = world.energy().total();
-    double largest = begin;
-    for (int n = 0; n < 2000; ++n) {
-      world.step();
-      largest = std::max(largest, world.energy().total());
-    }
-    return largest / begin;
-  };
-  const NetworkDescription light = chain_that_turns(2.0);  // K' Z' = 0.6 * 4
-  EXPECT_FALSE(stability_at_start(light).uncertainty.has_value());
-  EXPECT_LT(gain_of(light), 1.02);
+TEST(Certificate, HoldsForStiffHeavyDampersThatTurn) {
+  for (const double stiffness : {50.0, 300.0, 900.0}) {  // K' = 0.1, 0.6, 1.8
+    for (const double viscosity : {2.0, 20.0, 500.0}) {  // Z' = 4, 40, 1000
+      const NetworkDescription scene = chain_that_turns(stiffness, viscosity);
+      EXPECT_FALSE(stability_at_start(scene).uncertainty.has_value());
 
-  NetworkDescription heavy = chain_that_turns(20.0);
-  EXPECT_GT(gain_of(heavy), 1.3);
-  EXPECT_NE(why_uncertain(heavy).find("as it turns"), std::string::npos);
-  EXPECT_FALSE(stability_at_start(heavy).diverges());
-  heavy.dimension = 1;  // nothing turns there
-  heavy.gravity = Vec3::Zero();
-  for (Mat& mat : heavy.mats) mat.velocity = Vec3::Zero();
-  EXPECT_FALSE(stability_at_start(heavy).uncertainty.has_value());
+      World world = make_world(scene);
+      const double begin = world.energy().total();
+      double largest = begin;
+      for (int n = 0; n < 2000; ++n) {
+        world.step();
+        largest = std::max(largest, world.energy().total());
+      }
+      EXPECT_LT(largest, 1.001 * begin) << stiffness << " N/m, " << viscosity << " N s/m";
+    }
+  }
 }
 
 TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {

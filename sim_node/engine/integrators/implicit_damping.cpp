@@ -28,6 +28,7 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
       matrix_(dampers_alone(network)),
       displacement_(4 * network.mats.size(), 0.0),
       drag_of_ports_(displacement_.size(), 0.0),
+      turning_(displacement_.size(), 0.0),
       constant_(displacement_.size(), 0.0),
       kick_(displacement_.size(), 0.0),
       first_(displacement_.size(), 0.0),
@@ -45,7 +46,7 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
   for (const Link& link : network.links) {
     if (link.viscosity == 0.0 || mass_[link.mat_a] + mass_[link.mat_b] == 0.0) continue;
     dampers_.push_back({link.mat_a, link.mat_b, network.step * link.viscosity,
-                        link.isotropic && !is_1d_, Vec3::UnitX()});
+                        link.isotropic && !is_1d_, Vec3::UnitX(), 0.0});
   }
 }
 
@@ -54,8 +55,26 @@ void ImplicitDamping::find_axes(const MatArray& mats) noexcept {
   for (Damper& damper : dampers_) {
     if (damper.isotropic) continue;
     const Vec3 along = mats.position(damper.b) - mats.position(damper.a);
-    const double length = std::sqrt(dot(along, along));
-    damper.axis = length == 0.0 ? Vec3(Vec3::Zero()) : Vec3(along / length);
+    damper.length = std::sqrt(dot(along, along));
+    damper.axis = damper.length == 0.0 ? Vec3(Vec3::Zero()) : Vec3(along / damper.length);
+  }
+}
+
+/// Ends that keep their distance d go by d sin t across, and by d (1 - cos t) = k / 2 along, as they turn by t. They cannot where they
+/// go farther across than d: k stays at its largest.
+void ImplicitDamping::find_turning() noexcept {
+  if (is_1d_) return;
+  std::fill(turning_.begin(), turning_.end(), 0.0);
+  for (const Damper& damper : dampers_) {
+    if (damper.isotropic || damper.length == 0.0) continue;
+    const Vec3 apart = column(displacement_, damper.b) - column(displacement_, damper.a);
+    const Vec3 across = apart - dot(damper.axis, apart) * damper.axis;
+    const double square = damper.length * damper.length;
+    const double cosine = std::sqrt(std::max(square - dot(across, across), 0.0));
+    const double k = 2.0 * (damper.length - cosine);
+    const Vec3 force = (damper.viscosity * k) * damper.axis;
+    column(turning_, damper.a) -= force;
+    column(turning_, damper.b) += force;
   }
 }
 
@@ -73,10 +92,12 @@ void ImplicitDamping::add_drag_of_links(const AlignedVector<double>& displacemen
 }
 
 void ImplicitDamping::begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
-                                 const double* last_kick) noexcept {
+                                 const double* last_kick, bool first) noexcept {
   find_axes(mats);
   matrix_.assemble(mats);
   displacement_ = displacement;  // the same size: no allocation
+  find_turning();
+  first_period_ = first;
   last_kick_ = last_kick;
   std::fill(constant_.begin(), constant_.end(), 0.0);
   if (ports_.empty()) return;
@@ -104,18 +125,21 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     const Vec3 change = now - Vec3::Map(before + 4 * mat);
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
+  const double begin_of_period = first_period_ ? 0.0 : -0.5;  // from the moment of x(n), in periods
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
-                        column(drag_of_ports_, i);
+                        column(drag_of_ports_, i) -
+                        (kG * (begin_of_period + kG)) * column(turning_, i);
   }
   matrix_.solve(first_.data());
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     const Vec3 begin = column(displacement_, i);
-    column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
-                                     kG * kick_at(i, 0.5)) -
-                         column(drag_of_ports_, i);
+    column(second_, i) =
+        mass_[i] *
+            (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) + kG * kick_at(i, 0.5)) -
+        column(drag_of_ports_, i) - (kG * (begin_of_period + 1.0)) * column(turning_, i);
   }
   matrix_.solve(second_.data());
   for (std::size_t i = 0; i < count; ++i) {
@@ -162,9 +186,10 @@ void ImplicitDamping::find_carried_forces(const MatArray& mats) noexcept {
   }
 }
 
-ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& extrapolated,
-                                               bool first) noexcept {
+ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
+                                               AlignedVector<double>& extrapolated) noexcept {
   const std::size_t count = mass_.size();
+  const bool first = first_period_;
   // The mean velocity of the first period takes half a period of the forces.
   const double part = first ? 0.5 : 1.0;
   if (first) {
@@ -176,7 +201,9 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
               : Vec3(2.0 * kG * (1.0 - kG) * column(first_, i) + kG * kG * column(second_, i));
     }
   }
-  std::fill(drag_.begin(), drag_.end(), 0.0);
+  // The shares of u1 and u2 in w take nothing of what turns, those in the mean velocity do.
+  const double share_of_turning = first ? kG * kG * (3.0 - 2.0 * kG) : 0.0;
+  for (std::size_t i = 0; i < drag_.size(); ++i) drag_[i] = share_of_turning * turning_[i];
   add_drag_of_links(middle_, drag_);
   const double rate = 1.0 / dt_;
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];

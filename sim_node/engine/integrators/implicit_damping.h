@@ -24,6 +24,10 @@ namespace cordis::engine {
 /// and angular momentum are kept to rounding; the rounding of a velocity grows with Z dt / m.
 /// Stable while dt^2 K < 3.852 M, however large Z is (implicit_damping_limit).
 ///
+/// A damper pulls along its axis a at x(n), and turns meanwhile. Its ends part at the moment n + c by
+/// a u + c k, with k = dt |v_across|^2 / length: c is g - 1/2 for u1 and 1/2 for u2. So a heavy damper that
+/// turns keeps its length to second order, and w is as it was.
+///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
 /// take from x(0) to the moment 1/2, with the damping force I / dt and A = (M + g dt Z)^-1 M,
 ///
@@ -41,9 +45,10 @@ class ImplicitDamping {
   /// @param displacement  dt v(n-1/2); before the first period dt v(0); of a port its last one
   /// @param last_kick     kick() of the last step, which stays until the next; null: not known, and
   ///                      the forces change little
+  /// @param first         this is the period from x(0)
   /// Real time: in 2 and 3 dimensions one numeric factorisation, no allocation.
   void begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
-                  const double* last_kick) noexcept;
+                  const double* last_kick, bool first) noexcept;
 
   /// Counts `force` [N] at `mat`, which is among the forces of the MATs, as constant over the
   /// period.
@@ -73,9 +78,8 @@ class ImplicitDamping {
   };
   /// Ends the period: moves the masses to x(n+1).
   /// @param extrapolated   becomes x(n+1) - dt v(n+1), stored as the MATs are
-  /// @param first  this is the period from x(0)
   /// Real time: O(MATs + dampers), no allocation.
-  Work advance(MatArray& mats, AlignedVector<double>& extrapolated, bool first) noexcept;
+  Work advance(MatArray& mats, AlignedVector<double>& extrapolated) noexcept;
 
   /// Forces of the linear dampers on each MAT in the last period [N], 4 x N.
   const AlignedVector<double>& force() const noexcept { return force_; }
@@ -87,9 +91,11 @@ class ImplicitDamping {
     double viscosity;  // dt Z [kg]
     bool isotropic;
     Vec3 axis = Vec3::UnitX();
+    double length = 0.0;  // [m]
   };
 
   void find_axes(const MatArray& mats) noexcept;
+  void find_turning() noexcept;
   void find_carried_forces(const MatArray& mats) noexcept;
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
@@ -103,9 +109,11 @@ class ImplicitDamping {
   StiffnessMatrix matrix_;                // M + g dt Z
   AlignedVector<double> displacement_;    // dt v(n-1/2)
   AlignedVector<double> drag_of_ports_;   // g dt Z of their displacements, on the masses [kg m]
-  AlignedVector<double> constant_;        // forces [N]
+  AlignedVector<double> turning_;   // dt Z k of dampers along their axes, on the masses [kg m]
+  AlignedVector<double> constant_;  // forces [N]
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
+  bool first_period_ = false;
   AlignedVector<double> first_;     // dt u1
   AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)
   AlignedVector<double> middle_;    // dt w

@@ -108,14 +108,14 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
   for (const std::uint32_t port : world.port_inputs.ports()) {
     column(velocity_, port) = mats.position(port) - mats.delayed(port);
   }
-  damping_->begin_step(mats, velocity_, has_last_kick() ? last_kick() : nullptr);
+  damping_->begin_step(mats, velocity_, has_last_kick() ? last_kick() : nullptr, !started_);
 }
 
 /// Half of the work of dampers lies before the moment of the forces; in the first step all of it
 /// comes after.
 std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) noexcept {
   damping_->find_velocities(world.mats, nullptr);
-  const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_, !started_);
+  const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_);
   const double before = started_ ? 0.5 : 0.0;
   energy.dissipated += before * work.dissipated;
   energy.port_work += before * work.port_work;
