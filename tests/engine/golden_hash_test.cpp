@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/many_states.h"
+#include "tests/engine/rubbing.h"
 #include "tests/engine/scenes.h"
 #include "tests/support/golden_hashes.h"
 
@@ -119,6 +120,77 @@ World changing_links(VectorWidth width, IntegratorKind integrator = IntegratorKi
   return world;
 }
 
+/// Balls that rub, with pairs of two states, in a box whose floor is shaken, round a block and a rod.
+World shaken_balls(VectorWidth width, int dimension) {
+  NetworkDescription scene = rubbing_cloud(dimension, 17, /*states=*/true);
+  scene.gravity = -9.81 * Vec3::UnitY();
+  scene.medium_viscosity = 1e-3;
+  const engine::Friction friction{0.5, 0.3, 200.0, 0.1};
+  const Vec3 half_size(0.06, 0.04, dimension == 2 ? kNoEnd : 0.05);
+  const std::uint32_t block = add_surface(scene, box(half_size), Vec3(0.1, -0.2, 0));
+  const Vec3 axis = dimension == 2 ? Vec3(Vec3::UnitZ()) : Vec3(0.6, 0.0, 0.8);
+  const std::uint32_t rod = add_surface(scene, cylinder(axis, 0.05), Vec3(-0.1, -0.15, 0));
+  touch(scene, 40, rubbing(contact(300.0, 0.05), friction), 0.1, -1.0, {block, rod});
+
+  engine::TimeFunction shake;  // a wave of parabolas
+  shake.time = {0.0, 0.02, 0.05, 0.09, 0.15, 0.4};
+  for (const double height : {0.0, 0.02, -0.01, 0.03, 0.0, 0.01})
+    shake.value.emplace_back(0.5 * height, height, 0.0);
+  shake.smooth = true;
+  scene.time_functions = {shake};
+  constexpr std::uint32_t kFloor = 42;  // of the walls, the one that carries
+  scene.mats[kFloor].kind = MatKind::kPort;
+  scene.drives = {{kFloor, 0, false, scene.mats[kFloor].position}};
+  World world = make_world(scene, width);
+
+  run(world, 2000);
+  return world;
+}
+
+/// 3 dimensions: seven rods that are stiff against bending, clamped and blown at by a force that a formula gives.
+World blown_rods(VectorWidth width) {
+  NetworkDescription scene;
+  scene.step = 2e-4;
+  scene.gravity = Vec3(0, -9.81, 0);
+  const Term now = q(engine::Quantity::kAge);
+  engine::TimeFunction wind;
+  wind.formula = {(Term(0.02) * now * (Term(0.4) - now)).program, Term(0.001).program,
+                  (Term(0.05) * now * now).program};
+  scene.time_functions = {wind};
+  for (std::uint32_t rod = 0; rod < 7; ++rod) {
+    const std::uint32_t first = 9 * rod;
+    for (std::uint32_t i = 0; i < 9; ++i) {
+      const Vec3 place(0.1 * rod, 0.05 * i, 0.002 * scattered(first + i));
+      scene.mats.push_back(i < 2 ? fixed(place) : mass(0.001 + 0.001 * scattered(i), place));
+      if (i > 0) scene.links.push_back({first + i - 1, first + i, 400.0, 0.002, 0.05});
+      if (i > 1)
+        scene.bends.push_back(
+            {first + i - 2, first + i - 1, first + i, 0.01, 1e-6, 0.0, 0.05, 0.05});
+    }
+    scene.drives.push_back({first + 8, 0, true});
+  }
+  World world = make_world(scene, width);
+
+  run(world, 2000);
+  return world;
+}
+
+/// 2 dimensions: a melt, at surfaces too.
+World melt(VectorWidth width, IntegratorKind integrator) {
+  NetworkDescription scene = cloud(60, 0.9, 1.0, 2, 23);
+  scene.step = 5e-4;
+  scene.integrator = integrator;
+  scene.radius.clear();
+  add_set(scene, lennard_jones(0.05, 0.1, 0.25), 0.25, 0.0, 60);
+  for (const Vec3& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
+    add_surface(scene, plane(-side), 0.6 * side);
+  touch(scene, 60, of_one_state(contact(500.0, 0.1)), 0.05, 0.05, {60, 61, 62, 63});
+  World world = make_world(scene, width);
+
+  run(world, 2000);
+  return world;
+}
+
 class GoldenHash : public testing::TestWithParam<VectorWidth> {
  protected:
   static void expect(const World& world, const std::string& name) {
@@ -151,6 +223,17 @@ TEST_P(GoldenHash, OfTheLeapfrogStays) {
   expect(pushed_net(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_pushed_net");
   expect(changing_links(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_changing_links");
   expect(heavily_damped_net(GetParam()), "leapfrog_heavily_damped_net");
+}
+
+TEST_P(GoldenHash, OfSetsSurfacesFrictionAndDrivesStays) {
+  expect(shaken_balls(GetParam(), 2), "shaken_balls_2d");
+  expect(shaken_balls(GetParam(), 3), "shaken_balls_3d");
+  expect(melt(GetParam(), IntegratorKind::kCordis), "melt");
+  expect(melt(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_melt");
+}
+
+TEST_P(GoldenHash, OfBendsAndDrivenForcesStays) {
+  expect(blown_rods(GetParam()), "blown_rods");
 }
 
 TEST_P(GoldenHash, OfTheOtherIntegratorsStays) {
