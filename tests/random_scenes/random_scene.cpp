@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "tests/random_scenes/random_parts.h"
+
 namespace cordis::test {
 namespace {
 
@@ -20,7 +22,8 @@ enum class Matter { kAnything, kPotentials, kModes };
 class SceneWriter {
  public:
   explicit SceneWriter(std::uint32_t seed)
-      : random_(seed),
+      : seed_(seed),
+        random_(seed),
         friction_random_(~seed),
         random_of_drives_(seed ^ 0x5bd1e995U),
         random_of_variables_(seed ^ 0x2545f491U),
@@ -55,16 +58,25 @@ class SceneWriter {
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
-    return head_ + world() + "liaisons:\n" + liaisons_ + "matter:\n" + masses_ +
-           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + R"(signals:
+    RandomParts added;
+    if (matter_ != Matter::kModes) added = random_parts(seed_, space_, laws_of_parts());
+    return head_ + world() + added.parts + "liaisons:\n" + liaisons_ + added.liaisons +
+           "matter:\n" + masses_ + added.matter + (port_.empty() ? "" : "ports:\n" + port_) +
+           "links:\n" + links_ + added.links + R"(signals:
   lively: {quantity: kinetic_energy}
   middle: {of: p, quantity: center_of_mass, axis: x}
   fastest: {of: p, quantity: speed, take: largest}
   thrust: {of: p, quantity: force, axis: x, take: sum}
-)";
+)" + added.signals;
   }
 
  private:
+  PartLaws laws_of_parts() const {
+    if (matter_ == Matter::kPotentials) return PartLaws::kSprings;
+    if (freezes_) return PartLaws::kDampedSprings;
+    return PartLaws::kAll;
+  }
+
   std::uint32_t below(std::uint32_t count) { return static_cast<std::uint32_t>(random_() % count); }
   bool chance(double share) { return between(0.0, 1.0) < share; }
   double between(double low, double high) {
@@ -1045,6 +1057,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
                     names, rest, range);
   }
 
+  std::uint32_t seed_;
   std::mt19937 random_;
   std::mt19937 friction_random_;
   std::mt19937 random_of_drives_;     // by itself: what a seed draws besides does not depend on it

@@ -39,7 +39,8 @@ double sign_change_within(const Function& f, double low, double high) noexcept {
 }
 
 /// The zero of a function of the distance that is nearest to a place, as a ratio, on its side of 0. Looks
-/// for changes of sign from 1e-4 to 1e4 times the place, or of 1 m where the place is 0.
+/// for changes of sign from 1e-4 to 1e4 times the place, or of 1 m where the place is 0. Where the function is
+/// not finite it has none.
 template <class Function>
 std::optional<double> nearest_zero(const Function& f, double place) noexcept {
   constexpr double kRatio = 1.3;
@@ -60,6 +61,7 @@ std::optional<double> nearest_zero(const Function& f, double place) noexcept {
       const double value_before = search.value;
       search.distance *= search.ratio;
       search.value = f(search.distance);
+      if (!std::isfinite(search.value) || !std::isfinite(value_before)) continue;
       const bool changes = std::signbit(search.value) != std::signbit(value_before);
       if (search.value != 0.0 && !changes) continue;
       const double zero =
@@ -102,16 +104,17 @@ void Expression::check(const std::string& name) const {
 double Expression::distance_of_no_potential(const LawPoint& link) const noexcept {
   const double rest_length = link.distance - link.elongation;
   if (asks_for(program, Quantity::kElongation)) return rest_length;
+  LinkQuantities quantities{};
+  quantities[static_cast<std::size_t>(Quantity::kMassA)] = link.mass_a;
+  quantities[static_cast<std::size_t>(Quantity::kMassB)] = link.mass_b;
   const auto tension = [&](double distance) {
-    return scalar_tension(*this, {distance, 0.0, 0.0, link.mass_a, link.mass_b}, distance);
+    quantities[static_cast<std::size_t>(Quantity::kDistance)] = distance;
+    return value_of(program, quantities);
   };
   // Rounded, so that all distances of a link, whose rest lengths differ by rounding, have one zero.
   const auto place = static_cast<double>(static_cast<float>(rest_length));
   if (const auto nearest = nearest_zero(tension, place)) return *nearest;
-  LinkQuantities at_zero{};
-  at_zero[static_cast<std::size_t>(Quantity::kMassA)] = link.mass_a;
-  at_zero[static_cast<std::size_t>(Quantity::kMassB)] = link.mass_b;
-  if (std::isfinite(value_of(program, at_zero))) return 0.0;
+  if (std::isfinite(tension(0.0))) return 0.0;
   return link.distance < 0.0 ? -1.0 : 1.0;
 }
 
