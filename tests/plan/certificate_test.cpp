@@ -326,6 +326,30 @@ TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {
   EXPECT_EQ(why_uncertain(scene), "its force jumps at its range");
 }
 
+TEST(Certificate, IsNotGivenToASetOfOneDimensionThatPullsWhereItsEndsPass) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {mass(0.01, Vec3::Zero()), mass(0.01, Vec3(0.2, 0, 0))};
+  scene.state_machines = {state_machine(100.0)};
+  engine::SetLiaison set;
+  set.set_p = {0, 1};
+  set.range = 0.5;
+  scene.sets = {set};
+  const char* const pulls = "it pulls where its ends pass each other, and jumps there";
+  const auto is_told = [&] { return why_uncertain(scene) == pulls; };
+  EXPECT_FALSE(is_told());  // from the rest length 0 on the tension is that of a spring
+  scene.sets[0].rest_length = 0.1;
+  EXPECT_FALSE(is_told());  // it pushes there
+  scene.state_machines[0].states[0].elasticity = engine::Table({-0.1, 0.0}, {20.0, 0.0});
+  EXPECT_TRUE(is_told());  // 10 N more than the spring pushes with
+  scene.state_machines[0].states[0].pulls = false;
+  EXPECT_FALSE(is_told());
+  scene.state_machines[0].states[0].pulls = true;
+  scene.dimension = 2;
+  EXPECT_NE(why_uncertain(scene).find("turns there without a limit"), std::string::npos);
+}
+
 TEST(Certificate, OfAChoiceOfTheRateIsNotGivenEither) {
   NetworkDescription scene = mass_at(Vec3(1, 0, 0), 1, 200.0);
   join(scene, state_machine(0.0, engine::Table({-10.0, 10.0}, {100.0, 100.0})), 0.0);

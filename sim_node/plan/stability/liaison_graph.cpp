@@ -250,6 +250,9 @@ double add_set(const NetworkDescription& network, std::uint32_t index, const Rea
   slope = with_friction(slope, state_machine);
   if (!slope.bounded && !std::isfinite(fall) && slope.uncertainty == nullptr)
     slope.uncertainty = kFallsWithoutEnd;
+  if (network.dimension == 1 && !on_surfaces && slope.uncertainty == nullptr &&
+      pull_jumps_where_pairs_pass(state_machine, rest, slope, here))
+    slope.uncertainty = "it pulls where its ends pass each other, and jumps there";
   note(slope, {LiaisonKind::kSet, index}, graph);
   const std::size_t count_p = set.set_p.size();
   const std::size_t all =

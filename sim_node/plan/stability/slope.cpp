@@ -129,6 +129,18 @@ double viscosity_of_root(const engine::Law& law, double speed) {
   return std::max(viscous_tension(law, slow), 0.0) / slow.speed;
 }
 
+/// True if a state pulls more where its ends meet than a spring of this stiffness does there.
+bool pulls_where_ends_meet(const engine::LinkState& state, double rest_length, double stiffness,
+                           const Reach& reach) {
+  if (!state.pulls) return false;
+  const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
+  const double elongation = nearest - rest_length;
+  const double tension = state.stiffness * elongation +
+                         tension_between(state.elasticity, nearest, elongation, reach).high;
+  constexpr double kRounding = 1.001;
+  return tension > kRounding * stiffness * nearest;
+}
+
 Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, const Reach& reach) {
   const auto* elastic = std::get_if<engine::Expression>(&state.elasticity);
   const auto* viscous = std::get_if<engine::Expression>(&state.dissipation);
@@ -192,16 +204,9 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.bounded = false;
     slope.uncertainty = kPassesThrough;
   }
-  if (turns && state.pulls) {
-    const double nearest = 1e-9 * std::max({reach.elongation, std::abs(rest_length), 1e-6});
-    const double elongation = nearest - rest_length;
-    const double tension = state.stiffness * elongation +
-                           tension_between(state.elasticity, nearest, elongation, reach).high;
-    constexpr double kRounding = 1.001;
-    if (tension > kRounding * slope.stiffness * nearest) {
-      slope.bounded = false;
-      slope.uncertainty = kPullsWhereEndsMeet;
-    }
+  if (turns && pulls_where_ends_meet(state, rest_length, slope.stiffness, reach)) {
+    slope.bounded = false;
+    slope.uncertainty = kPullsWhereEndsMeet;
   }
   return slope;
 }
@@ -295,6 +300,13 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     if (largest.uncertainty == nullptr && !may_end) largest.uncertainty = slope.uncertainty;
   }
   return largest;
+}
+
+bool pull_jumps_where_pairs_pass(const engine::StateMachine& state_machine, double rest_length,
+                                 const Slope& slope, const Reach& reach) {
+  return std::ranges::any_of(state_machine.states, [&](const engine::LinkState& state) {
+    return pulls_where_ends_meet(state, rest_length, slope.stiffness, reach);
+  });
 }
 
 namespace {

@@ -37,6 +37,11 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 
+/// True if the force of a pair of a set of 1 dimension jumps where its ends pass each other, for it pulls there.
+/// @param slope  of the liaison
+bool pull_jumps_where_pairs_pass(const engine::StateMachine& state_machine, double rest_length,
+                                 const Slope& slope, const Reach& reach);
+
 /// Why the force of a link of 1 dimension that begins at a point jumps where its ends pass each other; null: it
 /// does not. What pushes at positive distances pulls at negative ones, and `pulls: false` cuts it there: so from
 /// behind nothing stops the ends.
