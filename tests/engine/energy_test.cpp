@@ -345,7 +345,8 @@ TEST(Energy, OfAnExpressionIsCountedFromWhereItsTensionVanishes) {
   EXPECT_EQ(zero_of(1.0 / (d - 0.3), 0.2), 0.0) << "a pole is no zero";
   EXPECT_EQ(zero_of(1.0 / (d - 0.5), 0.5), 0.0) << "a pole is no zero";
   EXPECT_EQ(zero_of(one(Operation::kExp, 5.0 * d), 0.3), 0.0) << "where it overflows is no zero";
-  EXPECT_EQ(zero_of(one(Operation::kExp, Term(-5.0) * d), -0.3), 0.0) << "where it overflows is no zero";
+  EXPECT_EQ(zero_of(one(Operation::kExp, Term(-5.0) * d), -0.3), 0.0)
+      << "where it overflows is no zero";
 }
 
 TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
