@@ -37,6 +37,9 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
   state_->port_inputs.begin(state_->mats);
+  if (state_->laws_ask_for_variables) {
+    read_variables(state_->description().variables, *this, state_->table.variables());
+  }
   state_->scheme->start(*state_);
   make_room();
 }
@@ -97,6 +100,7 @@ void World::set_external_force(std::uint32_t mat, const Vec3& force) noexcept {
 
 StepReport World::step() noexcept {
   const FloatMode mode;
+  if (state_->laws_ask_for_variables) state_->table.keep_variables();
   read_variables(network().description().variables, *this, state_->table.variables());
   return state_->step();
 }

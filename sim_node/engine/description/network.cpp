@@ -187,6 +187,8 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   check_states(description, set.state_machine, name);
   require(description.dimension > 1 || !rubs(description.state_machines[set.state_machine]),
           name + ": friction", "left out in 1 dimension, which has no direction to slide in");
+  require(!laws_ask_for_variable(description.state_machines[set.state_machine]),
+          name + ": its laws", "ones that ask for no variable of the network");
   require(!set.set_p.empty(), name + ": set P", "one of at least 1 MAT");
   require(std::isfinite(set.range) && set.range > 0.0, name + ": range", "finite and > 0");
   require(std::isfinite(set.rest_length), name + ": rest length", "finite");

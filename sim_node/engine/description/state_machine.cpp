@@ -54,13 +54,13 @@ void check_friction(const Friction& friction, const std::string& name) {
           name + ": static coefficient", "finite and not below the kinetic one");
 }
 
-void check_state(const StateMachine& state_machine, const LinkState& state,
-                 const std::string& name) {
+void check_state(const StateMachine& state_machine, const LinkState& state, const std::string& name,
+                 std::size_t variable_count) {
   require(is_finite_and_at_least_zero(state.stiffness), name + ": stiffness", "finite and >= 0");
   require(is_finite_and_at_least_zero(state.viscosity), name + ": viscosity", "finite and >= 0");
   require(state.force_limit > 0.0, name + ": force limit", "> 0");
-  check_elasticity(state.elasticity, name + ": elasticity");
-  check_dissipation(state.dissipation, name + ": dissipation");
+  check_elasticity(state.elasticity, name + ": elasticity", variable_count);
+  check_dissipation(state.dissipation, name + ": dissipation", variable_count);
   if (state.friction) check_friction(*state.friction, name + ": friction");
   require(state.first_exit <= state.last_exit && state.last_exit <= state_machine.exits.size(),
           name + ": exits", "a range of the exits of the state machine");
@@ -88,8 +88,18 @@ bool rubs(const StateMachine& state_machine) noexcept {
   });
 }
 
+bool asks_for_variable(const LinkState& state) noexcept {
+  return asks_for_variable(state.elasticity) || asks_for_variable(state.dissipation);
+}
+
+bool laws_ask_for_variable(const StateMachine& state_machine) noexcept {
+  return std::ranges::any_of(state_machine.states,
+                             [](const LinkState& state) { return asks_for_variable(state); });
+}
+
 bool asks_for_variable(const StateMachine& state_machine) noexcept {
-  return std::ranges::any_of(state_machine.exits,
+  return laws_ask_for_variable(state_machine) ||
+         std::ranges::any_of(state_machine.exits,
                              [](const Transition& exit) { return asks_for_variable(exit.when); });
 }
 
@@ -105,7 +115,7 @@ void check_state_machine(const StateMachine& state_machine, const std::string& n
   }
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const LinkState& state = state_machine.states[s];
-    check_state(state_machine, state, name + ": " + quoted("state", s, state.name));
+    check_state(state_machine, state, name + ": " + quoted("state", s, state.name), variable_count);
   }
   check_friction(state_machine.friction, name + ": friction");
 }

@@ -101,11 +101,15 @@ double touch_distance(const StateMachine& state_machine) noexcept;
 /// The most states a state machine may have.
 inline constexpr std::size_t kMaxStates = 64;
 
-/// True if a condition asks for a variable of the network: then it may come true whatever its own
+/// True if a law of a state asks for a variable of the network: then its force may change whatever its own
 /// link does.
+bool asks_for_variable(const LinkState& state) noexcept;
+/// True if a law of any of its states does.
+bool laws_ask_for_variable(const StateMachine& state_machine) noexcept;
+/// True if a condition or a law asks for a variable of the network.
 bool asks_for_variable(const StateMachine& state_machine) noexcept;
 
-/// @param variable_count  how many variables its conditions may ask for
+/// @param variable_count  how many variables its conditions and laws may ask for
 /// @throws std::invalid_argument beginning with `name`, with the first thing that is wrong: no
 /// state, a value out of range, an exit or a target that does not exist, a program that is not
 /// well-formed, a slot used twice by the exits of a state.

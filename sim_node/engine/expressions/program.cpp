@@ -110,8 +110,8 @@ bool has_edge(const Program& program) noexcept {
 }
 
 double value_of(const Program& program, const LinkQuantities& now, const LinkQuantities* before,
-                double edge) noexcept {
-  CORDIS_ASSERT(!asks_for_variable(program));
+                double edge, const double* variables) noexcept {
+  CORDIS_ASSERT(variables != nullptr || !asks_for_variable(program));
   std::array<double, kMaxStack> stack;
   std::array<double, kMaxStack> earlier;  // the stack as it was with `before`
   std::size_t depth = 0;
@@ -127,6 +127,8 @@ double value_of(const Program& program, const LinkQuantities& now, const LinkQua
       const auto quantity = static_cast<std::size_t>(instruction.quantity);
       value = now[quantity];
       old = before != nullptr ? (*before)[quantity] : value;
+    } else if (instruction.operation == Operation::kVariable) {
+      value = old = variables[instruction.slot];
     } else if (is_edge(instruction.operation)) {
       const double change = value - old;
       const bool is_so = instruction.operation == Operation::kRising ? change > 0.0 : change < 0.0;

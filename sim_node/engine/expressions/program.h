@@ -44,10 +44,13 @@ bool has_edge(const Program& program) noexcept;
 /// What a program may ask of a link, by Quantity.
 using LinkQuantities = std::array<double, kQuantityCount>;
 
-/// The value of a program for one link. Precondition: well-formed, and asks for no variable.
-/// @param before  the same link a moment earlier, for `rising` and `falling`; may be null
-/// @param edge    what `rising` and `falling` are without it
+/// The value of a program for one link. Precondition: well-formed, and asks for no variable without
+/// `variables`.
+/// @param before     the same link a moment earlier, for `rising` and `falling`; may be null
+/// @param edge       what `rising` and `falling` are without it
+/// @param variables  values of the variables of the network; may be null
 double value_of(const Program& program, const LinkQuantities& now,
-                const LinkQuantities* before = nullptr, double edge = 0.0) noexcept;
+                const LinkQuantities* before = nullptr, double edge = 0.0,
+                const double* variables = nullptr) noexcept;
 
 }  // namespace cordis::engine

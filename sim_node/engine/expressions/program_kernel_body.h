@@ -34,7 +34,9 @@ class ProgramLoop {
           ++depth;
           break;
         case Operation::kVariable:
-          Batch::fill(own_[depth], program.variable[instruction.slot]);
+          Batch::fill(own_[depth], program.variable == nullptr
+                                       ? __builtin_nan("")
+                                       : program.variable[instruction.slot]);
           value_[depth] = own_[depth];
           ++depth;
           break;

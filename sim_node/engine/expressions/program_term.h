@@ -20,8 +20,7 @@ inline constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 struct ProgramTerm {
   const Instruction* code = nullptr;
   std::size_t count = 0;
-  const double* variable = nullptr;  // values of the network's variables; may be null without
-                                     // kVariable
+  const double* variable = nullptr;  // values of the network's variables; null: none is known
 };
 
 /// What a program reads, for 8 rows; every array holds 8 values and is 64-byte aligned.

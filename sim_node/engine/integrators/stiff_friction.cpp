@@ -22,6 +22,7 @@ double inverse_mass(const Mat& mat) noexcept {
 
 /// Slope of a dissipation over the speed where it is steepest [N s/m].
 double steepest(const Law& law) noexcept {
+  if (asks_for_variable(law)) return kUnbounded;  // what it will be is not known
   LawRange range{kMaxSpeed};
   range.viscous = true;
   range.rest_length = 1.0;

@@ -84,7 +84,9 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       port_inputs(description()),
       freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
                                                     : nullptr),
-      scheme(make_integrator(description())) {}
+      scheme(make_integrator(description())),
+      laws_ask_for_variables(
+          std::ranges::any_of(description().state_machines, laws_ask_for_variable)) {}
 
 StateTable WorldState::make_table(std::vector<StateMachine> from) const {
   const IntegratorKind integrator = description().integrator;
@@ -278,6 +280,7 @@ Archive WorldState::serialize(Archive archive) {
   maxwell_links.serialize(archive);
   bends.serialize(archive);
   log.serialize(archive);
+  if (laws_ask_for_variables) archive.reals(table.variables());
   account.serialize(archive);
   if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last
   scheme->serialize(archive);

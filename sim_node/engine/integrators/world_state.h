@@ -132,7 +132,8 @@ struct WorldState {
   std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
   std::unique_ptr<Integrator> scheme;
   std::uint64_t step_count = 0;
-  bool replaced = false;  // a state machine is no longer that of the network
+  bool replaced = false;                // a state machine is no longer that of the network
+  bool laws_ask_for_variables = false;  // a law of the network does
 };
 
 }  // namespace cordis::engine

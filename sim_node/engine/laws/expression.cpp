@@ -72,6 +72,90 @@ std::optional<double> nearest_zero(const Function& f, double place) noexcept {
   return std::nullopt;
 }
 
+/// A value that changes with the distance by a constant slope.
+struct Line {
+  double value = 0.0;  // at the distance of the link
+  double slope = 0.0;
+  bool is_flat = true;  // does not ask for the distance
+};
+
+/// An operation on lines; nothing where no line comes of it.
+std::optional<Line> line_of(const Instruction& instruction, const Line* operands) noexcept {
+  const Line& u = operands[0];
+  const std::size_t count = operand_count(instruction.operation);
+  if (std::all_of(operands, operands + count, [](const Line& each) { return each.is_flat; })) {
+    std::array<double, 3> values{};
+    for (std::size_t i = 0; i < count; ++i) values[i] = operands[i].value;
+    return Line{apply(instruction, values.data())};
+  }
+  if (instruction.operation == Operation::kNegate) return Line{-u.value, -u.slope, false};
+  if (count != 2) return std::nullopt;
+  const Line& v = operands[1];
+  switch (instruction.operation) {
+    case Operation::kAdd:
+      return Line{u.value + v.value, u.slope + v.slope, false};
+    case Operation::kSubtract:
+      return Line{u.value - v.value, u.slope - v.slope, false};
+    case Operation::kMultiply:
+      if (!u.is_flat && !v.is_flat) return std::nullopt;
+      return Line{u.value * v.value, u.slope * v.value + u.value * v.slope, false};
+    case Operation::kDivide:
+      if (!v.is_flat) return std::nullopt;
+      return Line{u.value / v.value, u.slope / v.value, false};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The tension at rest as a line over the distance, at the present values of the variables; nothing where it is none.
+std::optional<Line> line_of(const Program& program, const LawPoint& link) noexcept {
+  std::array<Line, kMaxStack> stack;
+  std::size_t depth = 0;
+  for (const Instruction& instruction : program.code) {
+    const std::size_t taken = operand_count(instruction.operation);
+    const std::size_t place = depth - taken;
+    if (instruction.operation == Operation::kConstant) {
+      stack[place] = {instruction.constant};
+    } else if (instruction.operation == Operation::kVariable) {
+      stack[place] = {link.variables[instruction.slot]};
+    } else if (instruction.operation == Operation::kQuantity) {
+      switch (instruction.quantity) {
+        case Quantity::kDistance:
+          stack[place] = {link.distance, 1.0, false};
+          break;
+        case Quantity::kElongation:
+          stack[place] = {link.elongation, 1.0, false};
+          break;
+        case Quantity::kMassA:
+          stack[place] = {link.mass_a};
+          break;
+        case Quantity::kMassB:
+          stack[place] = {link.mass_b};
+          break;
+        default:
+          stack[place] = {};  // no speed at rest
+          break;
+      }
+    } else {
+      const std::optional<Line> line = line_of(instruction, &stack[place]);
+      if (!line) return std::nullopt;
+      stack[place] = *line;
+    }
+    depth = place + 1;
+  }
+  const Line& whole = stack[0];
+  if (!std::isfinite(whole.value) || !std::isfinite(whole.slope)) return std::nullopt;
+  return whole;
+}
+
+/// The potential of a line [J].
+double potential_of(const Line& line, const LawPoint& link, bool asks_for_elongation) noexcept {
+  if (asks_for_elongation)
+    return line.value * link.elongation - 0.5 * line.slope * link.elongation * link.elongation;
+  if (line.slope != 0.0) return 0.5 * line.value * line.value / line.slope;
+  return line.value * link.distance;
+}
+
 }  // namespace
 
 bool is_known_to_laws(Quantity quantity) noexcept {
@@ -93,9 +177,9 @@ bool is_known_to_laws(const Program& program) noexcept {
   });
 }
 
-void Expression::check(const std::string& name) const {
+void Expression::check(const std::string& name, std::size_t variable_count) const {
   const std::string what = name + ": expression";
-  check_program(program, what);
+  check_program(program, what, variable_count);
   require(!has_edge(program), what, "one without rising and falling");
   require(is_known_to_laws(program), what + ": quantity",
           "distance, elongation, speed, or the mass of an end");
@@ -104,12 +188,13 @@ void Expression::check(const std::string& name) const {
 double Expression::distance_of_no_potential(const LawPoint& link) const noexcept {
   const double rest_length = link.distance - link.elongation;
   if (asks_for(program, Quantity::kElongation)) return rest_length;
+  if (link.variables == nullptr && asks_for_variable(program)) return 0.0;
   LinkQuantities quantities{};
   quantities[static_cast<std::size_t>(Quantity::kMassA)] = link.mass_a;
   quantities[static_cast<std::size_t>(Quantity::kMassB)] = link.mass_b;
   const auto tension = [&](double distance) {
     quantities[static_cast<std::size_t>(Quantity::kDistance)] = distance;
-    return value_of(program, quantities);
+    return value_of(program, quantities, nullptr, 0.0, link.variables);
   };
   // Rounded, so that all distances of a link, whose rest lengths differ by rounding, have one zero.
   const auto place = static_cast<double>(static_cast<float>(rest_length));
@@ -119,10 +204,16 @@ double Expression::distance_of_no_potential(const LawPoint& link) const noexcept
 }
 
 double Expression::potential(const LawPoint& link) const noexcept {
+  if (asks_for_variable(program)) {
+    if (link.variables == nullptr) return 0.0;
+    const std::optional<Line> line = line_of(program, link);
+    if (line) return potential_of(*line, link, asks_for(program, Quantity::kElongation));
+  }
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double argument) {
-    return scalar_tension(*this, {argument, argument - rest_length, 0.0, link.mass_a, link.mass_b},
-                          argument);
+    const LawPoint point{argument,    argument - rest_length, 0.0, link.mass_a,
+                         link.mass_b, link.variables};
+    return scalar_tension(*this, point, argument);
   };
   return integral_over_distance(tension, distance_of_no_potential(link), link.distance);
 }

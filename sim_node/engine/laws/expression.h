@@ -20,7 +20,8 @@ bool is_known_to_laws(const Program& program) noexcept;
 
 /// The tension is 0 where the value is not finite.
 struct Expression {
-  Program program;  ///< asks for distance, elongation, speed and masses alone, without edges
+  Program program;  ///< asks for distance, elongation, speed, masses and variables of the network
+                    ///< alone, without edges
 
   static constexpr const char* kName = nullptr;  ///< a scene writes the expression itself
   static constexpr LawArgument kArgument = LawArgument::kAny;
@@ -31,11 +32,13 @@ struct Expression {
     visit(LawField{.key = "expression"}, law.program.code);
   }
 
-  void check(const std::string& name) const;
+  /// @param variable_count  how many variables of the network it may ask for
+  void check(const std::string& name, std::size_t variable_count = 0) const;
   /// True when all of the tension is the slope of a potential: it does not ask for the speed.
   bool is_potential() const noexcept { return !asks_for(program, Quantity::kSpeed); }
   /// Energy of the tension at rest, by quadrature [J]: 0 at the elongation 0; when that is not asked for, where
-  /// it pulls nothing nearest to the rest length, else at the distance 0, else at 1 m.
+  /// it pulls nothing nearest to the rest length, else at the distance 0, else at 1 m. Where it asks for variables
+  /// and is a line over the distance, in closed form: 0 at the elongation 0, or where the line is 0.
   double potential(const LawPoint& link) const noexcept;
   /// The distance at which that is 0 [m].
   double distance_of_no_potential(const LawPoint& link) const noexcept;
@@ -44,7 +47,10 @@ struct Expression {
   double range() const noexcept { return 0.0; }
 
   using Term = ProgramTerm;
-  Term term() const noexcept { return {program.code.data(), program.code.size()}; }
+  /// @param variables  as in LawPoint
+  Term term(const double* variables = nullptr) const noexcept {
+    return {program.code.data(), program.code.size(), variables};
+  }
 
   template <class Lanes>
   static void add(const Term& program, const LawArguments& arguments, double* tension) noexcept {

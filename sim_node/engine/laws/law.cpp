@@ -29,14 +29,26 @@ bool stores_energy(const Law& law) noexcept {
   return std::visit([](const auto& alternative) { return alternative.kStoresEnergy; }, law);
 }
 
-void check_elasticity(const Law& law, const std::string& name) {
-  std::visit([&](const auto& alternative) { alternative.check(name); }, law);
+void check_elasticity(const Law& law, const std::string& name, std::size_t variable_count) {
+  const auto check = [&]<class Type>(const Type& alternative) {
+    if constexpr (std::is_same_v<Type, Expression>) {
+      alternative.check(name, variable_count);
+    } else {
+      alternative.check(name);
+    }
+  };
+  std::visit(check, law);
 }
 
-void check_dissipation(const Law& law, const std::string& name) {
+void check_dissipation(const Law& law, const std::string& name, std::size_t variable_count) {
   require(argument_of(law) != LawArgument::kDistance, name + ": kind",
           "a function of the speed, not of the distance");
-  check_elasticity(law, name);
+  check_elasticity(law, name, variable_count);
+}
+
+bool asks_for_variable(const Law& law) noexcept {
+  const auto* expression = std::get_if<Expression>(&law);
+  return expression != nullptr && asks_for_variable(expression->program);
 }
 
 double elastic_tension(const Law& law, const LawPoint& link) noexcept {

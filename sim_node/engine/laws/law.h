@@ -53,9 +53,12 @@ bool stores_energy(const Law& law) noexcept;
 
 /// @throws std::invalid_argument beginning with `name` when the law is not fit to be the elasticity
 /// of a state.
-void check_elasticity(const Law& law, const std::string& name);
+/// @param variable_count  how many variables of the network its expression may ask for
+void check_elasticity(const Law& law, const std::string& name, std::size_t variable_count = 0);
 /// Checks the law of a viscosity likewise.
-void check_dissipation(const Law& law, const std::string& name);
+void check_dissipation(const Law& law, const std::string& name, std::size_t variable_count = 0);
+/// True if its expression asks for a variable of the network.
+bool asks_for_variable(const Law& law) noexcept;
 
 /// The tension [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
 /// checked.

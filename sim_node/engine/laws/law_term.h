@@ -23,6 +23,9 @@ struct LawPoint {
   double speed = 0.0;       ///< elongation rate [m/s]; 0 in the step in which a state is entered
   double mass_a = 0.0;      ///< mass of end a [kg]; 0 for a fixed point or a port mass
   double mass_b = 0.0;
+  /// Values of the variables of the network. Null: none is known, and an expression that asks for one
+  /// pulls nothing.
+  const double* variables = nullptr;
 };
 
 /// The links of a LaneBatch, as a law sees them: one row for each quantity.

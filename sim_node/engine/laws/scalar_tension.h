@@ -14,7 +14,11 @@ double scalar_tension(const Type& law, const LawPoint& link, double argument) no
   double tension = 0.0;
   const LawArguments arguments{&argument,   &link.distance, &link.elongation,
                                &link.speed, &link.mass_a,   &link.mass_b};
-  Type::template add<ScalarLanes>(law.term(), arguments, &tension);
+  if constexpr (requires { law.term(link.variables); }) {
+    Type::template add<ScalarLanes>(law.term(link.variables), arguments, &tension);
+  } else {
+    Type::template add<ScalarLanes>(law.term(), arguments, &tension);
+  }
   return tension;
 }
 

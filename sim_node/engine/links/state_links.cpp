@@ -49,7 +49,29 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
   for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
     column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
   }
+  for (std::uint32_t l = 0; l < link_count_; ++l) {
+    if (laws_ask_for_variable(description.state_machines[state_machine_[l]])) asking_.push_back(l);
+  }
   adopt(table);
+}
+
+double StateLinkArray::parameter_energy(const StateTable& table,
+                                        const ForceColumns& columns) const noexcept {
+  double sum = 0.0;
+  for (const std::uint32_t l : asking_) {
+    if (!table.asks_for_variable(state_[l])) continue;
+    const auto between = [&](const double* places) {
+      return Vec3(Vec3::Map(places + column_b_[l]) - Vec3::Map(places + column_a_[l]));
+    };
+    const Vec3 along = between(columns.position);
+    const Vec3 moved = along - between(columns.delayed);
+    const double distance = is_1d_ ? along.x() : along.norm();
+    if (!is_1d_ && distance == 0.0) continue;  // no direction, hence no force
+    const double increment = is_1d_ ? moved.x() : along.dot(moved) / distance;
+    sum += table.parameter_energy(state_[l], distance, rest_length_[l], {mass_a_[l], mass_b_[l]},
+                                  increment);
+  }
+  return sum;
 }
 
 StateLinkRows StateLinkArray::rows(const StateTable& table, const ActiveLinks::Run& run) noexcept {
@@ -114,6 +136,7 @@ StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTabl
     double switching;    // [J]
   };
   Entry entry{this, &table, &log, step, 0, 0.0};
+  if (!asking_.empty()) entry.switching = parameter_energy(table, columns);
   const auto on_change = [](void* owner, std::size_t first, const StateMachineRows& rows) noexcept {
     auto& target = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kStateBatch; ++i) {

@@ -80,6 +80,8 @@ class StateLinkArray {
 
  private:
   StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
+  /// What the change of variables that laws ask for has brought into the links [J]. Real time: O(links that ask).
+  double parameter_energy(const StateTable& table, const ForceColumns& columns) const noexcept;
   double distance_at_last_call(const MatArray& mats, std::size_t link) const noexcept;
 
   bool is_1d_;   // 1 dimension
@@ -105,6 +107,7 @@ class StateLinkArray {
   bool needs_impulse_ = false;  // some program of the table does
   bool needs_age_ = false;
   bool needs_velocity_ = false;
+  std::vector<std::uint32_t> asking_;  // links of a law that asks for variables, in some state
   ActiveLinks active_;
 };
 

@@ -90,12 +90,16 @@ struct ReadyLaw {
 
 namespace {
 
-/// Precondition: the law lives as long as what is made of it.
-ReadyLaw ready(const Law& law) {
+/// Precondition: the law and the variables live as long as what is made of it.
+ReadyLaw ready(const Law& law, const double* variables) {
   const auto* expression = std::get_if<Expression>(&law);
   const bool asks_speed = expression != nullptr && !expression->is_potential();
+  const auto term_of = [variables](const auto& alternative) {
+    if constexpr (requires { alternative.term(variables); }) return alternative.term(variables);
+    if constexpr (!requires { alternative.term(variables); }) return alternative.term();
+  };
   const auto make = [&](const auto& alternative) -> ReadyLaw {
-    const auto term = std::make_shared<const decltype(alternative.term())>(alternative.term());
+    const auto term = std::make_shared<const decltype(alternative.term())>(term_of(alternative));
     return {{static_cast<std::uint32_t>(law.index()), alternative.kStoresEnergy, asks_speed,
              term.get()},
             term};
@@ -117,6 +121,8 @@ struct StateTable::Content {
   std::array<bool, kQuantityCount> needs{};
   std::uint32_t slot_count = 0;
   std::vector<double> variables;  // of as many as the network has; stays where it is
+  std::vector<double> variables_before;
+  std::vector<bool> asks_for_variable;  // by state, and of the padding
 
   void build();
   void add_state_machine(const StateMachine& state_machine);
@@ -130,10 +136,12 @@ void StateTable::Content::build() {
   laws.clear();
   first_state.clear();
   state_machine_of.clear();
+  asks_for_variable.clear();
   needs.fill(false);
   slot_count = 0;
   for (const StateMachine& state_machine : state_machines) add_state_machine(state_machine);
   terms.emplace_back();  // the padding
+  asks_for_variable.push_back(false);
 }
 
 void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
@@ -170,7 +178,8 @@ void StateTable::Content::add_state(const LinkState& state,
   term.one_sided = !(state.pulls && state.pushes);
   term.limited = term.one_sided || state.force_limit < kUnlimited;
   for (LawTerm* target : {&term.elasticity, &term.dissipation}) {
-    laws.push_back(ready(target == &term.elasticity ? state.elasticity : state.dissipation));
+    laws.push_back(
+        ready(target == &term.elasticity ? state.elasticity : state.dissipation, variables.data()));
     *target = laws.back().term;
   }
   term.limits_elastic = state.force_limit < kUnlimited ||
@@ -178,6 +187,7 @@ void StateTable::Content::add_state(const LinkState& state,
   term.exits = exits_of_state_machine.data() + state.first_exit;
   term.exit_count = state.last_exit - state.first_exit;
   terms.push_back(term);
+  asks_for_variable.push_back(engine::asks_for_variable(state.elasticity));
 }
 
 void StateTable::Content::record_needs(const Program& program) {
@@ -197,6 +207,7 @@ StateTable::StateTable(std::vector<StateMachine> state_machines, double dt, bool
     : content_(std::make_unique<Content>()) {
   CORDIS_ASSERT(dt > 0.0 && all_pass(state_machines, variable_count));
   content_->variables.resize(variable_count, 0.0);
+  content_->variables_before.resize(variable_count, 0.0);
   content_->state_machines = std::move(state_machines);
   content_->dt = dt;
   content_->part_of_work = whole_steps ? 0.0 : 0.5;
@@ -213,6 +224,14 @@ const StateTerm* StateTable::terms() const noexcept {
 
 std::span<double> StateTable::variables() noexcept {
   return content_->variables;
+}
+
+void StateTable::keep_variables() noexcept {
+  std::ranges::copy(content_->variables, content_->variables_before.begin());
+}
+
+bool StateTable::asks_for_variable(StateIndex state) const noexcept {
+  return content_->asks_for_variable[state];
 }
 
 std::size_t StateTable::state_count() const noexcept {
@@ -254,15 +273,40 @@ std::uint32_t StateTable::slot_count() const noexcept {
 
 double StateTable::stored_energy(StateIndex index, double distance, double rest_length,
                                  const EndMasses& mass) const noexcept {
+  return stored_energy(
+      index, {distance, distance - rest_length, 0.0, mass.a, mass.b, content_->variables.data()});
+}
+
+double StateTable::stored_energy(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
-  if (term.limits_elastic) {
-    return limited_energy(index, {distance, distance - rest_length, 0.0, mass.a, mass.b});
-  }
-  const double elongation =
-      std::min(term.max_elongation, std::max(term.min_elongation, distance - rest_length));
-  const double linear = 0.5 * term.stiffness * elongation * elongation;
+  if (term.limits_elastic) return limited_energy(index, link);
+  LawPoint clamped = link;
+  clamped.elongation =
+      std::min(term.max_elongation, std::max(term.min_elongation, link.elongation));
+  const double linear = 0.5 * term.stiffness * clamped.elongation * clamped.elongation;
   if (term.elasticity.type == 0) return linear;
-  return linear + potential(state(index).elasticity, {distance, elongation, 0.0, mass.a, mass.b});
+  return linear + potential(state(index).elasticity, clamped);
+}
+
+double StateTable::elastic_tension_of(StateIndex index, const LawPoint& link) const noexcept {
+  const StateTerm& term = content_->terms[index];
+  const double whole =
+      term.stiffness * link.elongation + elastic_tension(state(index).elasticity, link);
+  if (!term.limits_elastic) return whole;
+  return std::min(term.max_tension, std::max(term.min_tension, whole));
+}
+
+double StateTable::parameter_energy(StateIndex index, double distance, double rest_length,
+                                    const EndMasses& mass,
+                                    double elongation_increment) const noexcept {
+  // In the middle of the last period, for every integrator: a parameter changes all the time, and at the end of
+  // each period its work would be wrong by a part of order dt.
+  const auto energy = [&](const std::vector<double>& variables) {
+    const LawPoint link{distance, distance - rest_length, 0.0, mass.a, mass.b, variables.data()};
+    return stored_energy(index, link) -
+           0.5 * elastic_tension_of(index, link) * elongation_increment;
+  };
+  return energy(content_->variables) - energy(content_->variables_before);
 }
 
 /// Energy of a state whose tension has limits: the integral of the limited elastic tension [J].
@@ -279,7 +323,8 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
     return energy_of_half(*balls, pulls, link.distance);
   const double rest_length = link.distance - link.elongation;
   const auto tension = [&](double distance) {
-    const LawPoint point{distance, distance - rest_length, 0.0, link.mass_a, link.mass_b};
+    const LawPoint point{distance,    distance - rest_length, 0.0, link.mass_a,
+                         link.mass_b, link.variables};
     const double whole = term.stiffness * point.elongation + elastic_tension(law, point);
     return std::min(term.max_tension, std::max(term.min_tension, whole));
   };

@@ -32,8 +32,12 @@ class StateTable {
   StateTable& operator=(StateTable&&) noexcept;
 
   const StateTerm* terms() const noexcept;
-  /// The values of the variables that conditions see, one for all links; 0 at first.
+  /// The values of the variables that conditions and laws see, one for all links; 0 at first.
   std::span<double> variables() noexcept;
+  /// Keeps these values as those of before, for parameter_energy().
+  void keep_variables() noexcept;
+  /// True if the law of a state asks for a variable.
+  bool asks_for_variable(StateIndex state) const noexcept;
   std::size_t state_count() const noexcept;  ///< without the padding
   StateIndex padding_state() const noexcept;
   StateIndex first_state(std::uint32_t state_machine) const noexcept;
@@ -59,6 +63,10 @@ class StateTable {
   /// What a change adds to the stored energy as the account keeps it: after minus before. In the
   /// middle of the last period that is stored energy less half of the elastic work of the period.
   double change_energy(const StateMachineRows& rows, std::size_t row) const noexcept;
+  /// What variables that are no longer as they were kept add to the stored energy, likewise.
+  /// @param elongation_increment  of the row in this period [m]
+  double parameter_energy(StateIndex state, double distance, double rest_length,
+                          const EndMasses& mass, double elongation_increment) const noexcept;
   /// The condition's quantity of an exit; kNone when it was forced.
   Quantity triggered(StateIndex from, std::uint32_t exit) const noexcept;
 
@@ -67,7 +75,10 @@ class StateTable {
   void replace(std::uint32_t index, const StateMachine& state_machine);
 
  private:
+  double stored_energy(StateIndex index, const LawPoint& link) const noexcept;
   double limited_energy(StateIndex index, const LawPoint& link) const noexcept;
+  /// The part of the tension that stores energy [N]. Precondition: the law of the state is an expression.
+  double elastic_tension_of(StateIndex index, const LawPoint& link) const noexcept;
 
   struct Content;
   std::unique_ptr<Content> content_;
