@@ -13,6 +13,12 @@ void settle(scene::Scene& scene, config::Problems& problems) {
   if (!scene.settle) return;
   CORDIS_ASSERT(scene.network.step > 0.0);
   const scene::Settle& asked = *scene.settle;
+  if (plan::rest_is_open(scene.network)) {
+    problems.error(asked.place,
+                   "a scene whose laws ask for more than time_s has no rest to settle to",
+                   "leave out 'settle', or let its parameters ask for time_s alone");
+    return;
+  }
   const plan::Settled rest = plan::settle(scene.network, asked.until, asked.max_steps);
   if (!rest.is_finite) {
     problems.error(asked.place, "the scene diverges while it settles",

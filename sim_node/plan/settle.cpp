@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/assert.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/stability/slope.h"
 
@@ -29,6 +30,16 @@ engine::StateMachine pulling_with(double force) {
   engine::StateMachine machine;
   machine.states = {std::move(state)};
   return machine;
+}
+
+/// The elasticity as it is at step 0. Precondition: it asks for no variable but the time.
+void stop_time(engine::Law& law) {
+  auto* expression = std::get_if<engine::Expression>(&law);
+  if (expression == nullptr) return;
+  for (engine::Instruction& instruction : expression->program.code) {
+    if (instruction.operation == engine::Operation::kVariable)
+      instruction = {engine::Operation::kConstant, {}, 0.0, 0};
+  }
 }
 
 /// The network without all that acts only while something moves.
@@ -56,6 +67,7 @@ NetworkDescription undamped(NetworkDescription network) {
       state.friction.reset();
       state.viscosity = 0.0;
       state.dissipation = engine::NoLaw{};
+      stop_time(state.elasticity);
     }
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
@@ -176,7 +188,22 @@ Settled try_to_settle(const NetworkDescription& network, double until, std::uint
 
 }  // namespace
 
+bool rest_is_open(const NetworkDescription& network) {
+  const auto asks_for_more = [&network](const engine::StateMachine& machine) {
+    const auto* expression =
+        std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
+    if (expression == nullptr) return false;
+    return std::ranges::any_of(
+        expression->program.code, [&network](const engine::Instruction& instruction) {
+          return instruction.operation == engine::Operation::kVariable &&
+                 network.variables[instruction.slot].quantity != engine::VariableKind::kTime;
+        });
+  };
+  return std::ranges::any_of(network.state_machines, asks_for_more);
+}
+
 Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+  CORDIS_ASSERT(!rest_is_open(network));
   Settled pose = try_to_settle(network, until, max_steps);
   NetworkDescription finer = network;
   std::uint64_t steps = pose.steps;

@@ -18,11 +18,16 @@ struct Settled {
   bool is_rounding = false;            ///< what pulls falls no more, and is rounding
 };
 
+/// True if the law of a state of the start asks for a variable other than the time: then no pose is at rest for
+/// the values of the start alone, and settle() takes no such network.
+bool rest_is_open(const engine::NetworkDescription& network);
+
 /// Lets a network come to rest from its start, without dampers, medium and velocities. It moves by
 /// `cordis` at its step, or a shorter one where that diverges. It is held still whenever its kinetic
 /// energy falls (kinetic damping). Each liaison stays in its state of the start, without friction; a
 /// Maxwell element keeps its start force. Ports and what is driven stay, and driven forces are those
-/// of the start. The same bits on every vector width.
+/// of the start, as are laws of the time. The same bits on every vector width.
+/// Precondition: !rest_is_open(network).
 /// @param until  it ends once no mass is pulled by more [N], or only by rounding
 /// @param max_steps  it ends after so many of all lengths, settled or not
 Settled settle(const engine::NetworkDescription& network, double until, std::uint64_t max_steps);

@@ -132,7 +132,7 @@ struct Parameters::Target {
       }
       if (change.kind == Change::Kind::kStateMachine) {
         change.state_machine = *state_machine_of(*own);
-        scene.liaisons->pool().bind_as(change.first, change.state_machine);
+        scene.liaisons->pool().bind_as(change.first, own->references, change.state_machine);
       } else {
         change.stiffness = own->stiffness;
         change.viscosity = own->viscosity;
@@ -388,7 +388,7 @@ std::vector<std::pair<std::string, double>> Parameters::values_of_liaison(
       found.emplace_back(name, *value);
     } else if (own != overrides.end()) {
       found.emplace_back(name, own->second);
-    } else {
+    } else if (!asks_outside(definition.find(name), values, scene_->liaisons->signals())) {
       found.emplace_back(name,
                          read_formula(definition.find(name), name, 0.0, {}, values, problems));
     }

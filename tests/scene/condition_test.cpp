@@ -558,12 +558,12 @@ INSTANTIATE_TEST_SUITE_P(
     OutsideOfConditions, BadScenes,
     testing::Values(BadScene{kHead2,
                              R"(liaisons:
-  l: {elasticity: "3 * ^m.position_x_m"}
+  l: {force_limit_n: "3 * ^m.position_x_m"}
 matter:
   m: {kind: mass, mass_kg: 1, at_m: [0, 0]}
 )",
-                             "elasticity of liaison 'l' cannot ask for 'm.position_x_m'",
-                             "only a condition, 'when', asks for what is outside its link"},
+                             "'force_limit_n' in liaison 'l' cannot ask for 'm.position_x_m'",
+                             "a condition or a law of a liaison asks for what is outside its link"},
                     BadScene{kHead2,
                              R"(liaisons:
   l: {parameters: {k: 3}, elasticity: "k^[2] * elongation_m"}

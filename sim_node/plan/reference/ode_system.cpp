@@ -42,7 +42,8 @@ OdeSystem::OdeSystem(engine::NetworkDescription network)
   for (const engine::StateMachine& state_machine : network_.state_machines) {
     if (rubs(state_machine)) throw std::invalid_argument("friction has no reference integrator");
     if (asks_for_variable(state_machine))
-      throw std::invalid_argument("conditions on other variables have no reference integrator");
+      throw std::invalid_argument(
+          "conditions and laws that ask for other variables have no reference integrator");
     for (const engine::Transition& exit : state_machine.exits) {
       refuse_impulse(exit.when);
       refuse_impulse(exit.rest_length);

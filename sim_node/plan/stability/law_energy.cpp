@@ -393,7 +393,8 @@ bool drives_motion(const engine::LinkState& state, const Interval& distance, dou
     }
   }
   if (is_table && !asks) return false;
-  const LinkBox box{distance, {}, rest_length, reach.mass_a, reach.mass_b};
+  LinkBox box{distance, {}, rest_length, reach.mass_a, reach.mass_b};
+  box.variables = reach.variables.get();
   return !OppositionToMotion(state, box).is_sure(speed);
 }
 

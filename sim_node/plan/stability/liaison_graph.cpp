@@ -40,6 +40,9 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
   return largest;
 }
 
+constexpr const char* kFed =
+    "its parameter changes and does work without an end, and a law without a largest slope may "
+    "take it";
 constexpr const char* kFallsWithoutEnd =
     "it brings in energy without an end, and a law without a largest slope may take it";
 constexpr const char* kStartsTooStrong =
@@ -437,6 +440,9 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
   graph.turning = turning_with_sets(network, reach, stored);
   if (reach.endless && !graph.bounded && !graph.uncertainty) {
     graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
+  }
+  if (reach.fed && !graph.bounded && !graph.uncertainty) {
+    graph.uncertainty = {{LiaisonKind::kStateLink, *reach.fed}, kFed};
   }
   return graph;
 }

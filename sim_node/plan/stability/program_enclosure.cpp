@@ -104,7 +104,7 @@ class Evaluation {
       const Enclosed result = apply(instruction, stack.data() + (stack.size() - taken));
       stack.resize(stack.size() - taken);
       stack.push_back(result);
-      if (stack.back().jumps) continue;
+      if (stack.back().jumps || is_of_variables_alone(stack.back())) continue;
       if (!std::isfinite(size_of(stack.back().value)) && box_is_finite()) stack.back() = kUnknown;
     }
     return stack.front().jumps ? Enclosed{stack.front().value, {kAny, kAny}} : stack.front();
@@ -115,6 +115,13 @@ class Evaluation {
  private:
   bool box_is_finite() const {
     return std::isfinite(size_of(box_.distance)) && std::isfinite(size_of(box_.speed));
+  }
+
+  /// Variables have no ends that a box could give them.
+  bool is_of_variables_alone(const Enclosed& u) const {
+    return box_.variables != nullptr && std::ranges::all_of(u.slope, [](const Interval& slope) {
+             return size_of(slope) == 0.0;
+           });
   }
 
   Enclosed quantity(Quantity which) const {
@@ -263,6 +270,9 @@ class Evaluation {
       return {{instruction.constant, instruction.constant}};
     }
     if (instruction.operation == Operation::kQuantity) return quantity(instruction.quantity);
+    if (instruction.operation == Operation::kVariable) {
+      return {box_.variables == nullptr ? kAny : box_.variables->at(instruction.slot)};
+    }
     if (count == 1) return one(instruction, operands[0]);
     if (instruction.operation == Operation::kSelect) {
       const Interval& which = operands[0].value;
@@ -478,7 +488,8 @@ bool has_step_along(Interval LinkBox::*variable, Interval LinkBox::*across,
 
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box) {
   CORDIS_ASSERT(box.bisections > 0);
-  CORDIS_ASSERT(engine::is_well_formed(program) && engine::is_known_to_laws(program));
+  CORDIS_ASSERT(engine::is_well_formed(program, kAnyVariables) &&
+                engine::is_known_to_laws(program));
   const auto rise = [](const Interval& slope) { return std::max(0.0, slope.high); };
   const auto enough = [](double most, double reached) {
     return most <= (1.0 + kNearEnough) * std::max(0.0, reached);

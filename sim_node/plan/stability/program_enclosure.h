@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "sim_node/engine/expressions/program.h"
 
@@ -25,8 +26,10 @@ struct LinkBox {
   Interval mass_b;
   Interval force = kAnyNumber;       ///< tension [N], for conditions as the next two
   Interval remembered = kAnyNumber;  ///< age [s], impulse [N s] and stretch of friction [m]
-  bool rest_moves = false;           ///< nothing is known of the rest length, nor of the elongation
-  int bisections = 2000;             ///< at most, for the largest slope; > 0
+  /// What each variable of the network lies within; null: any number.
+  const std::vector<Interval>* variables = nullptr;
+  bool rest_moves = false;  ///< nothing is known of the rest length, nor of the elongation
+  int bisections = 2000;    ///< at most, for the largest slope; > 0
 };
 
 /// No tangent of the program in a box is above these: over the distance, and over the speed.

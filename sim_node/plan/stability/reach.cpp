@@ -151,6 +151,11 @@ double relative_speed(const engine::LinkState& state, const Reach& reach) {
 
 Interval tension_between(const engine::Law& law, double distance, double elongation,
                          const Reach& reach) {
+  if (engine::asks_for_variable(law)) {
+    LinkBox box{{distance, distance}, {}, distance - elongation, reach.mass_a, reach.mass_b};
+    box.variables = reach.variables.get();
+    return values_of(std::get<engine::Expression>(law).program, box);
+  }
   Interval all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (const double mass_a : {reach.mass_a.low, reach.mass_a.high}) {
     for (const double mass_b : {reach.mass_b.low, reach.mass_b.high}) {
@@ -161,8 +166,43 @@ Interval tension_between(const engine::Law& law, double distance, double elongat
   return all;
 }
 
+Interval range_of_variable(const engine::NetworkDescription& network,
+                           const engine::Variable& variable) {
+  constexpr double kNoEnd = std::numeric_limits<double>::infinity();
+  const bool is_one = variable.take == engine::Take::kOne;
+  switch (variable.quantity) {
+    case engine::VariableKind::kPosition: {
+      if (!is_one || network.mats[variable.index].kind != engine::MatKind::kFixed) break;
+      const double place =
+          variable.direction.dot(network.mats[variable.index].position) - variable.offset;
+      return {place, place};
+    }
+    case engine::VariableKind::kDistance:
+      if (network.dimension == 1) break;
+      return {0.0, kNoEnd};
+    case engine::VariableKind::kSpeed:
+    case engine::VariableKind::kAge:
+    case engine::VariableKind::kTime:
+    case engine::VariableKind::kChanges:
+    case engine::VariableKind::kKineticEnergy:
+    case engine::VariableKind::kState:
+      return {0.0, kNoEnd};
+    case engine::VariableKind::kAwake:
+      return {0.0, 1.0};
+    default:
+      break;
+  }
+  return kAnyNumber;
+}
+
 Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
+  if (std::ranges::any_of(network.state_machines, engine::laws_ask_for_variable)) {
+    std::vector<Interval> ranges;
+    for (const engine::Variable& variable : network.variables)
+      ranges.push_back(range_of_variable(network, variable));
+    reach.variables = std::make_shared<const std::vector<Interval>>(std::move(ranges));
+  }
   reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
   double energy = energy_brought(network);
   std::uint32_t index = 0;
@@ -171,7 +211,11 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     const double distance =
         (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
     reach.elongation = std::max({reach.elongation, distance, std::abs(link.rest_length)});
-    const double brought = known.brought(network, link);
+    const bool is_fed = std::ranges::any_of(
+        network.state_machines[link.state_machine].states,
+        [](const engine::LinkState& state) { return asks_for_variable(state.elasticity); });
+    if (is_fed && !reach.fed) reach.fed = index;
+    const double brought = is_fed ? 0.0 : known.brought(network, link);
     if (std::isfinite(brought)) {
       energy += brought;
     } else if (!reach.endless) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,10 @@ struct Reach {
   /// The first link with states whose potential falls without an end; what it brings in is not in
   /// `brought`.
   std::optional<std::uint32_t> endless = {};
+  /// The first link with states whose elasticity asks for a variable: nothing bounds what that brings in.
+  std::optional<std::uint32_t> fed = {};
+  /// What each variable of the network lies within; null: any number.
+  std::shared_ptr<const std::vector<Interval>> variables = {};
   /// Elongations at which a liaison begins in the state of its start [m].
   Interval begins = {};
   bool rests_differ = false;  ///< not every pair of the liaison has the same rest length
@@ -41,6 +46,10 @@ struct Reach {
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
 /// @param factor  of the energies
 Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
+
+/// What a variable of a network lies within, as far as its kind or a fixed point says.
+Interval range_of_variable(const engine::NetworkDescription& network,
+                           const engine::Variable& variable);
 
 /// The reach of a liaison between one of some MATs and one of others.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,
@@ -60,7 +69,7 @@ double work_of_forces(const Reach& reach, double way) noexcept;
 double relative_speed(const engine::LinkState& state, const Reach& reach);
 
 /// The least and the most that an elasticity pulls at a distance, between any two of the masses of the
-/// reach [N]: the masses stand at their ends.
+/// reach [N]: the masses stand at their ends. Where an expression asks for variables, at any values of them.
 Interval tension_between(const engine::Law& law, double distance, double elongation,
                          const Reach& reach);
 

@@ -25,6 +25,9 @@ constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
     "a change of state may begin it where it is steep, for its law has no largest slope";
+constexpr const char* kUnboundedVariable =
+    "its law asks for a signal or a quantity that nothing bounds";
+constexpr const char* kMayDriveApart = "what its law asks for may make it drive its ends apart";
 constexpr const char* kDrivesApart = "it drives its ends apart ever harder";
 constexpr const char* kDrivesMotion =
     "its force over the speed drives the motion, and nothing bounds the energy of that";
@@ -57,6 +60,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
               rest_length,
               reach.mass_a,
               reach.mass_b};
+  box.variables = reach.variables.get();
   box.bisections = reach.bisections;
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const LinkBox reached = box;
@@ -71,7 +75,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   const SteepestSlopes far = steepest_slopes(program, box);
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
     slope.bounded = false;
-    slope.uncertainty = kNoLargestSlope;
+    slope.uncertainty = engine::asks_for_variable(program) ? kUnboundedVariable : kNoLargestSlope;
     return;
   }
   if (has_step(program, reached, reached)) {
@@ -181,6 +185,16 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.viscosity += law.value;
     slope.bounded = slope.bounded && law.bounded;
   }
+  if (elastic != nullptr && slope.uncertainty == nullptr && asks_for_variable(state.elasticity)) {
+    LinkBox box{{rest_length - stretch.shorter, rest_length + stretch.longer},
+                {-speed, speed},
+                rest_length,
+                reach.mass_a,
+                reach.mass_b};
+    box.variables = reach.variables.get();
+    if (state.stiffness + flattest_slope(elastic->program, box, slope.stiffness) < 0.0)
+      slope.uncertainty = kMayDriveApart;
+  }
   if (slope.uncertainty == nullptr && drives_apart(state, rest_length, turns, reach)) {
     slope.uncertainty = kDrivesApart;
   }
@@ -204,7 +218,8 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.bounded = false;
     slope.uncertainty = kPassesThrough;
   }
-  if (turns && pulls_where_ends_meet(state, rest_length, slope.stiffness, reach)) {
+  if (turns && slope.uncertainty != kUnboundedVariable &&
+      pulls_where_ends_meet(state, rest_length, slope.stiffness, reach)) {
     slope.bounded = false;
     slope.uncertainty = kPullsWhereEndsMeet;
   }
@@ -376,6 +391,11 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
 
 Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
+  if (asks_for_variable(state)) {  // of which nothing is sure
+    Tangent unknown;
+    unknown.jumps = true;
+    return unknown;
+  }
   const double elongation = point.elongation;
   const double scale = std::max(std::abs(point.distance), 1e-6);
   const double near = 1e-6 * scale;

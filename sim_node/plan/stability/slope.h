@@ -66,7 +66,7 @@ struct Tangent {
   double tension = 0.0;    ///< where it does not act, only what it pushes with at its limit [N]
   bool acts = false;       ///< surely: neither let go of, nor about to be, nor at its limit
   bool sticks = false;     ///< its force over the speed is steeper than any number at rest
-  bool jumps = false;      ///< its law has a step there, and so no tangent
+  bool jumps = false;      ///< its law has a step there or asks for variables, and so no tangent
 
   /// True when nothing is surely there.
   bool is_nothing() const noexcept {

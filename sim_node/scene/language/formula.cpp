@@ -114,7 +114,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
     double number = word.number;
     if (word.kind == ExpressionWord::Kind::kOfAnother) {
       problems.error(expression.place_of(word), what + " cannot ask for '" + word.name + "'",
-                     "only a condition, 'when', asks for what is outside its link");
+                     "a condition or a law of a liaison asks for what is outside its link");
     } else if (word.kind == ExpressionWord::Kind::kName) {
       if (const QuantityName* const known = find_quantity(word.name)) {
         code.push_back({Operation::kQuantity, known->quantity, 0.0, 0});
@@ -158,7 +158,8 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
 }
 
 std::optional<engine::Program> compile_law(const Value& text, const std::string& what,
-                                           const ParameterValues& parameters, Problems& problems) {
+                                           const ParameterValues& parameters, AskedOutside& outside,
+                                           Problems& problems) {
   const std::optional<Expression> expression = parse_expression(text, what, problems);
   if (!expression) return std::nullopt;
   if (expression->is_truth) {
@@ -166,6 +167,7 @@ std::optional<engine::Program> compile_law(const Value& text, const std::string&
                    "write if(..., 1, 0)");
     return std::nullopt;
   }
+  bool is_law = true;
   for (const ExpressionWord& word : expression->words) {
     const QuantityName* const known =
         word.kind == ExpressionWord::Kind::kName ? find_quantity(word.name) : nullptr;
@@ -176,20 +178,22 @@ std::optional<engine::Program> compile_law(const Value& text, const std::string&
         expression->place_of(word),
         what + " cannot ask for '" + (has_edge ? "rising' or 'falling" : word.name) + "'",
         "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg");
-    return std::nullopt;
+    is_law = false;
   }
   std::uint32_t slots = 0;
   std::optional<CompiledExpression> compiled =
-      compile(*expression, what, parameters, slots, problems);
-  if (!compiled) return std::nullopt;
+      compile(*expression, what, parameters, slots, problems, &outside);
+  if (!compiled || !is_law) return std::nullopt;
   return std::move(compiled->program);
 }
 
 namespace {
 
-/// The value of a formula of parameters alone.
-std::optional<double> evaluate(const Value& value, const std::string& what,
-                               const ParameterValues& parameters, Problems& problems) {
+/// The value of a formula of parameters and of what is outside the link.
+/// @param outside  nullptr: nothing there may be asked for, and the formula is a number
+std::optional<ChangingNumber> evaluate_changing(const Value& value, const std::string& what,
+                                                const ParameterValues& parameters,
+                                                AskedOutside* outside, Problems& problems) {
   const std::optional<Expression> expression = parse_expression(value, what, problems);
   if (!expression) return std::nullopt;
   for (const ExpressionWord& word : expression->words) {
@@ -200,13 +204,26 @@ std::optional<double> evaluate(const Value& value, const std::string& what,
     }
   }
   std::uint32_t slots = 0;
-  const std::optional<CompiledExpression> compiled =
-      compile(*expression, what, parameters, slots, problems);
+  std::optional<CompiledExpression> compiled =
+      compile(*expression, what, parameters, slots, problems, outside);
   if (!compiled) return std::nullopt;
-  const bool one_number = !expression->is_truth && compiled->program.code.size() == 1 && slots == 0;
-  if (one_number) return compiled->program.code.front().constant;
-  problems.error(value.place(), what + " must be a number, got a comparison");
-  return std::nullopt;
+  if (expression->is_truth || slots > 0) {
+    problems.error(value.place(), what + " must be a number, got a comparison");
+    return std::nullopt;
+  }
+  const Instruction& first = compiled->program.code.front();
+  if (compiled->program.code.size() == 1 && is_constant(first))
+    return ChangingNumber{first.constant, {}};
+  return ChangingNumber{0.0, std::move(compiled->program)};
+}
+
+/// The value of a formula of parameters alone.
+std::optional<double> evaluate(const Value& value, const std::string& what,
+                               const ParameterValues& parameters, Problems& problems) {
+  const std::optional<ChangingNumber> changing =
+      evaluate_changing(value, what, parameters, nullptr, problems);
+  if (!changing) return std::nullopt;
+  return changing->number;
 }
 
 }  // namespace
@@ -343,6 +360,36 @@ double read_formula(const Value& value, const std::string& what, double fallback
   if (!number) return fallback;
   const Value as_written = Value::scalar(config::number_text(*number), value.place());
   return config::read_number(as_written, what, fallback, range, problems);
+}
+
+bool asks_outside(const Value& value, const ParameterValues& parameters,
+                  const std::set<std::string>& signals) {
+  if (!value.exists() || is_plain_number(value)) return false;
+  Problems scratch;
+  const std::optional<Expression> expression = parse_expression(value, "", scratch);
+  if (!expression) return false;
+  std::vector<VariableReference> references;
+  const AskedOutside outside{signals, references};
+  return std::ranges::any_of(expression->words, [&](const ExpressionWord& word) {
+    return reference_of(*expression, word, parameters, outside).has_value();
+  });
+}
+
+ChangingNumber optional_changing(config::MappingReader& reader, const std::string& key,
+                                 double fallback, Range range, const ParameterValues& parameters,
+                                 AskedOutside& outside, Problems& problems) {
+  const Value value = reader.optional_value(key);
+  if (!value.exists() || is_plain_number(value))
+    return {optional_formula(reader, key, fallback, range, parameters, problems), {}};
+  if (config::KeyLog* const log = config::KeyLog::current())
+    log->add({key, config::KeyKind::kFormula, false, range, {}, 0, {}, reader.place()});
+  const std::string what = "'" + key + "' in " + reader.what();
+  std::optional<ChangingNumber> changing =
+      evaluate_changing(value, what, parameters, &outside, problems);
+  if (!changing) return {fallback, {}};
+  if (changing->changes()) return std::move(*changing);
+  const Value as_written = Value::scalar(config::number_text(changing->number), value.place());
+  return {config::read_number(as_written, what, fallback, range, problems), {}};
 }
 
 double optional_formula(config::MappingReader& reader, const std::string& key, double fallback,

@@ -58,7 +58,7 @@ double optional_formula(config::MappingReader& reader, const std::string& key, d
 double required_formula(config::MappingReader& reader, const std::string& key, config::Range range,
                         const ParameterValues& parameters, config::Problems& problems);
 
-/// What a condition asks for outside its link, by name: whose it is shows where the link stands.
+/// What a condition or a law asks for outside its link, by name: whose it is shows where the link stands.
 struct VariableReference {
   std::string owner;  ///< selection of one MAT, port or link; empty: of the scene
   std::string word;   ///< quantity with its axis and unit, time_s, or the name of a signal
@@ -66,7 +66,7 @@ struct VariableReference {
   config::Place place;
 };
 
-/// What a condition may ask for outside its link.
+/// What a condition or a law may ask for outside its link.
 struct AskedOutside {
   const std::set<std::string>& signals;  ///< names of those of the scene
   std::vector<VariableReference>&
@@ -82,16 +82,35 @@ struct CompiledExpression {
 /// Puts the names of an expression to quantities and values, and folds what is constant. Whatever
 /// is wrong is a problem of its place.
 /// @param next_slot  of the next `rising` or `falling`; moved on
-/// @param outside    of a condition; nullptr where nothing outside the link may be asked for
+/// @param outside    of a condition or a law; nullptr where nothing outside the link may be asked for
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, config::Problems& problems,
                                           AskedOutside* outside = nullptr);
 
-/// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg and the
-/// parameters. Whatever is wrong is a problem of its place.
+/// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg, the
+/// parameters and what is outside the link. Whatever is wrong is a problem of its place.
 std::optional<engine::Program> compile_law(const config::Value& text, const std::string& what,
-                                           const ParameterValues& parameters,
+                                           const ParameterValues& parameters, AskedOutside& outside,
                                            config::Problems& problems);
+
+/// A number of a liaison, or a formula whose value changes while a run goes on.
+struct ChangingNumber {
+  double number = 0.0;
+  engine::Program program;  ///< not empty: the formula; it asks for nothing of the link
+
+  bool changes() const noexcept { return !program.empty(); }
+};
+
+/// True if a value is a formula that asks for something outside the link.
+bool asks_outside(const config::Value& value, const ParameterValues& parameters,
+                  const std::set<std::string>& signals);
+
+/// Reads a key as optional_formula() does, or a formula that asks for something outside the link. A formula that
+/// changes is held to no range.
+ChangingNumber optional_changing(config::MappingReader& reader, const std::string& key,
+                                 double fallback, config::Range range,
+                                 const ParameterValues& parameters, AskedOutside& outside,
+                                 config::Problems& problems);
 
 }  // namespace cordis::scene

@@ -107,12 +107,13 @@ void for_each_law(const Function& function) {
 
 /// Reads the key of a law. @param argument  key of the points of a table
 Law read_law(config::MappingReader& reader, const char* key, const char* argument, bool of_speed,
-             const ParameterValues& parameters, Problems& problems) {
+             const ParameterValues& parameters, AskedOutside& outside, Problems& problems) {
   const Value value = reader.optional_value(key);
   const std::string what = std::string(key) + " of " + reader.what();
   if (!value.exists()) return {};
   if (value.kind() == Value::Kind::kScalar) {
-    std::optional<engine::Program> program = compile_law(value, what, parameters, problems);
+    std::optional<engine::Program> program =
+        compile_law(value, what, parameters, outside, problems);
     return program ? Law(engine::Expression{std::move(*program)}) : Law();
   }
   std::vector<std::string> kinds;
@@ -137,13 +138,14 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
 }  // namespace
 
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
-                            Problems& problems) {
-  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, problems);
+                            AskedOutside& outside, Problems& problems) {
+  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, outside, problems);
 }
 
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
-                             Problems& problems) {
-  return read_law(reader, "dissipation", "at_m_per_s", /*of_speed=*/true, parameters, problems);
+                             AskedOutside& outside, Problems& problems) {
+  return read_law(reader, "dissipation", "at_m_per_s", /*of_speed=*/true, parameters, outside,
+                  problems);
 }
 
 }  // namespace cordis::scene

@@ -10,10 +10,10 @@ namespace cordis::scene {
 /// Reads the key `elasticity` of a state, a law over elongation or distance; no law when absent.
 /// The language is described in docs/language.md.
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
-                            config::Problems& problems);
+                            AskedOutside& outside, config::Problems& problems);
 
 /// Reads the key `dissipation`, a law over the speed.
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
-                             config::Problems& problems);
+                             AskedOutside& outside, config::Problems& problems);
 
 }  // namespace cordis::scene

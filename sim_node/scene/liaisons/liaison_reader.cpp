@@ -91,6 +91,8 @@ class LiaisonReader {
       law = read_states(reader, parameters);
     } else if (kind == kBending) {
       law.bend = read_bend_law(reader, space_, parameters, problems_);
+    } else if (changes(written, kind, parameters)) {
+      law = read_changing(reader, kind, parameters);
     } else {
       law = read_linear(reader, kind, parameters);
     }
@@ -117,13 +119,19 @@ class LiaisonReader {
       if (reader.has(key)) reader.error_at(key, "a " + kind_name + " has no '" + key + "'");
     };
     const Range range = maxwell ? Range::positive() : Range::not_negative();
+    const auto required = [&](const char* key) {
+      if (maxwell) return required_formula(reader, key, range, parameters, problems_);
+      AskedOutside outside{liaisons_.signals(), law.references};
+      reader.required_value(key);
+      return optional_changing(reader, key, 0.0, range, parameters, outside, problems_).number;
+    };
     if (kind.has_stiffness) {
-      law.stiffness = required_formula(reader, kStiffness, range, parameters, problems_);
+      law.stiffness = required(kStiffness);
     } else {
       refuse(kStiffness);
     }
     if (kind.has_viscosity) {
-      law.viscosity = required_formula(reader, kViscosity, range, parameters, problems_);
+      law.viscosity = required(kViscosity);
     } else {
       refuse(kViscosity);
     }
@@ -135,6 +143,96 @@ class LiaisonReader {
     if (maxwell)
       law.start_force = optional_formula(reader, kStartForce, 0.0, Range{}, parameters, problems_);
     return law;
+  }
+
+  /// True if a parameter of a linear liaison is a formula that asks for something outside the link.
+  bool changes(const Value& written, const std::string& kind,
+               const ParameterValues& parameters) const {
+    if (kind == "maxwell") return false;
+    return std::ranges::any_of(
+        std::array{kStiffness, kViscosity, kRestLength}, [&](const char* key) {
+          return asks_outside(written.find(key), parameters, liaisons_.signals());
+        });
+  }
+
+  /// A spring or damper whose parameters change, as one state: K (distance - rest) and Z times the speed.
+  LinkLaw read_changing(MappingReader& reader, const std::string& kind,
+                        const ParameterValues& parameters) {
+    LinkLaw law;
+    law.kind = LinkKind::kState;
+    AskedOutside outside{liaisons_.signals(), law.references};
+    const std::size_t errors_before = problems_.error_count();
+    const auto read = [&](const char* key, bool is_its_own, bool is_required) {
+      if (!is_its_own) {
+        reader.optional_value(key);
+        if (reader.has(key)) reader.error_at(key, "a " + kind + " has no '" + key + "'");
+        return ChangingNumber{};
+      }
+      if (is_required) reader.required_value(key);
+      return optional_changing(reader, key, 0.0,
+                               key == kRestLength ? Range{} : Range::not_negative(), parameters,
+                               outside, problems_);
+    };
+    const ChangingNumber stiffness = read(kStiffness, kind != "damper", true);
+    const ChangingNumber viscosity = read(kViscosity, kind != "spring", true);
+    const bool rest_changes =
+        asks_outside(reader.optional_value(kRestLength), parameters, liaisons_.signals());
+    ChangingNumber rest;
+    if (rest_changes && kind != "damper") {
+      rest = read(kRestLength, true, false);
+      law.rest_changes = true;
+      reader.optional_choice("rest", "", {"radii"});
+      if (reader.has("rest"))
+        reader.error_at("rest", "either 'rest_m' or 'rest' can be given in " + reader.what());
+    } else if (kind == "damper") {
+      read(kRestLength, false, false);
+    } else {
+      read_rest(reader, law, parameters);
+    }
+    if (problems_.error_count() != errors_before) return law;
+    engine::StateMachine machine;
+    machine.name = open_.back();
+    engine::LinkState& state = machine.states.emplace_back();
+    if (stiffness.changes() || rest.changes()) {
+      state.elasticity = engine::Expression{elasticity_of(stiffness, rest)};
+    } else {
+      state.stiffness = stiffness.number;
+    }
+    if (viscosity.changes()) {
+      state.dissipation = engine::Expression{
+          times(viscosity.program, {engine::Operation::kQuantity, engine::Quantity::kSpeed, 0, 0})};
+    } else {
+      state.viscosity = viscosity.number;
+    }
+    try {
+      engine::check_state_machine(machine, reader.what(), law.references.size());
+    } catch (const std::invalid_argument& refusal) {
+      problems_.error(reader.place(), refusal.what());
+      return law;
+    }
+    law.state_machine = std::make_shared<const engine::StateMachine>(std::move(machine));
+    return law;
+  }
+
+  static engine::Program times(engine::Program program, const engine::Instruction& factor) {
+    program.code.push_back(factor);
+    program.code.push_back({engine::Operation::kMultiply, {}, 0.0, 0});
+    return program;
+  }
+
+  /// K times the elongation, or times distance - rest where the rest changes.
+  static engine::Program elasticity_of(const ChangingNumber& stiffness,
+                                       const ChangingNumber& rest) {
+    engine::Program program = stiffness.program;
+    if (!stiffness.changes())
+      program.code.push_back({engine::Operation::kConstant, {}, stiffness.number, 0});
+    if (!rest.changes())
+      return times(program, {engine::Operation::kQuantity, engine::Quantity::kElongation, 0, 0});
+    program.code.push_back({engine::Operation::kQuantity, engine::Quantity::kDistance, 0, 0});
+    program.code.insert(program.code.end(), rest.program.code.begin(), rest.program.code.end());
+    program.code.push_back({engine::Operation::kSubtract, {}, 0.0, 0});
+    program.code.push_back({engine::Operation::kMultiply, {}, 0.0, 0});
+    return program;
   }
 
   /// `rest_m` or `rest: radii`.

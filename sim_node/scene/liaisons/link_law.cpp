@@ -45,6 +45,13 @@ void read_rest(const Use& use, LinkLaw& law) {
     return;
   }
   if (!has_length && !radii) return;
+  if (law.rest_changes) {
+    reader.error_at(
+        has_length ? kRest : "rest",
+        "the rest length of this liaison follows a formula, and a link gives it no other",
+        "leave it out, or use a liaison with a rest_m that is a number");
+    return;
+  }
   const bool signed_length = use.space == 1 || law.kind == LinkKind::kState;
   const double length =
       has_length ? reader.required_number(kRest, signed_length ? Range{} : Range::not_negative())
@@ -185,16 +192,31 @@ std::uint32_t StateMachinePool::index_of(Origin origin, const engine::StateMachi
 
 void StateMachinePool::bind(std::uint32_t index, Bindings bindings) {
   bindings_[index] = std::move(bindings);
-  bind_as(index, state_machines_[index]);
+  bind_as(index, references_[index], state_machines_[index]);
 }
 
-void StateMachinePool::bind_as(std::uint32_t index, engine::StateMachine& state_machine) const {
+void StateMachinePool::bind_as(std::uint32_t index,
+                               const std::vector<VariableReference>& references,
+                               engine::StateMachine& state_machine) const {
   const Bindings& bindings = bindings_[index];
-  for (engine::Transition& exit : state_machine.exits) {
-    for (engine::Instruction& instruction : exit.when.code) {
+  const std::vector<VariableReference>& own = references_[index];
+  const auto put = [&](engine::Program& program) {
+    for (engine::Instruction& instruction : program.code) {
       if (instruction.operation != engine::Operation::kVariable) continue;
-      CORDIS_ASSERT(instruction.slot < bindings.size());
-      instruction = bindings[instruction.slot];
+      CORDIS_ASSERT(instruction.slot < references.size());
+      const VariableReference& wanted = references[instruction.slot];
+      const auto same = std::ranges::find_if(own, [&](const VariableReference& known) {
+        return known.owner == wanted.owner && known.word == wanted.word &&
+               known.state == wanted.state;
+      });
+      CORDIS_ASSERT(same != own.end());
+      instruction = bindings[static_cast<std::size_t>(same - own.begin())];
+    }
+  };
+  for (engine::Transition& exit : state_machine.exits) put(exit.when);
+  for (engine::LinkState& state : state_machine.states) {
+    for (engine::Law* law : {&state.elasticity, &state.dissipation}) {
+      if (auto* expression = std::get_if<engine::Expression>(law)) put(expression->program);
     }
   }
 }

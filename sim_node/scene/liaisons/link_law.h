@@ -41,6 +41,7 @@ struct LinkLaw {
   double viscosity = 0.0;             ///< Z [N s/m], unless kState
   double start_force = 0.0;           ///< [N] of kMaxwell
   std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
+  bool rest_changes = false;          ///< its law has a formula in the place of the rest length
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
   std::shared_ptr<const engine::StateMachine> state_machine;  ///< state machine for kState
@@ -94,7 +95,9 @@ class StateMachinePool {
   /// Puts the references of a state machine to variables, once.
   void bind(std::uint32_t index, Bindings bindings);
   /// Binds a state machine of the same liaison with other numbers, which takes the place of this one.
-  void bind_as(std::uint32_t index, engine::StateMachine& state_machine) const;
+  /// @param references  its own: some of those of this one
+  void bind_as(std::uint32_t index, const std::vector<VariableReference>& references,
+               engine::StateMachine& state_machine) const;
 
  private:
   std::vector<engine::StateMachine> state_machines_;

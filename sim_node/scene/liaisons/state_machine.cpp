@@ -28,16 +28,44 @@ struct ExitSource {
   Problems& problems;
 };
 
+/// Adds a parameter that changes, times what it is a slope over, to the law beside it.
+void add_changing(config::MappingReader& reader, const char* key, const ChangingNumber& parameter,
+                  engine::Quantity over, engine::Law& law) {
+  if (!parameter.changes()) return;
+  engine::Program program = parameter.program;
+  program.code.push_back({engine::Operation::kQuantity, over, 0.0, 0});
+  program.code.push_back({engine::Operation::kMultiply, {}, 0.0, 0});
+  if (const auto* beside = std::get_if<engine::Expression>(&law)) {
+    program.code.insert(program.code.end(), beside->program.code.begin(),
+                        beside->program.code.end());
+    program.code.push_back({engine::Operation::kAdd, {}, 0.0, 0});
+  } else if (!is_none(law)) {
+    reader.error_at(key,
+                    std::string("'") + key + "' in " + reader.what() +
+                        " changes, and stands beside a law that is no expression",
+                    "write the law as an expression, or two liaisons in 'parallel'");
+    return;
+  }
+  law = engine::Expression{std::move(program)};
+}
+
 LinkState read_physics(config::MappingReader& reader, const ParameterValues& parameters,
-                       Problems& problems) {
+                       AskedOutside& outside, Problems& problems) {
   const Range not_negative = Range::not_negative();
   LinkState state;
-  state.stiffness =
-      optional_formula(reader, "stiffness_n_per_m", 0.0, not_negative, parameters, problems);
-  state.viscosity = optional_formula(reader, "viscosity_n_s_per_m", 0.0,
-                                     Range::between(0.0, kMaxViscosity), parameters, problems);
-  state.elasticity = read_elasticity(reader, parameters, problems);
-  state.dissipation = read_dissipation(reader, parameters, problems);
+  const ChangingNumber stiffness = optional_changing(reader, "stiffness_n_per_m", 0.0, not_negative,
+                                                     parameters, outside, problems);
+  const ChangingNumber viscosity =
+      optional_changing(reader, "viscosity_n_s_per_m", 0.0, Range::between(0.0, kMaxViscosity),
+                        parameters, outside, problems);
+  state.stiffness = stiffness.number;
+  state.viscosity = viscosity.number;
+  state.elasticity = read_elasticity(reader, parameters, outside, problems);
+  state.dissipation = read_dissipation(reader, parameters, outside, problems);
+  add_changing(reader, "stiffness_n_per_m", stiffness, engine::Quantity::kElongation,
+               state.elasticity);
+  add_changing(reader, "viscosity_n_s_per_m", viscosity, engine::Quantity::kSpeed,
+               state.dissipation);
   state.force_limit = optional_formula(reader, "force_limit_n", state.force_limit,
                                        Range::positive(), parameters, problems);
   state.pulls = reader.optional_truth("pulls", true);
@@ -138,7 +166,7 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   if (!is_free_name(entry.key)) {
     source.problems.error(entry.key_place, "'" + entry.key + "' cannot be the name of a state");
   }
-  LinkState state = read_physics(reader, source.parameters, source.problems);
+  LinkState state = read_physics(reader, source.parameters, source.outside, source.problems);
   state.name = entry.key;
   state.friction =
       read_own_friction(reader, state_machine.friction, source.parameters, source.problems);
@@ -192,7 +220,7 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
   engine::StateMachine state_machine;
   state_machine.friction = read_friction(reader, {}, parameters, problems);
   if (!reader.has("states")) {
-    state_machine.states.push_back(read_physics(reader, parameters, problems));
+    state_machine.states.push_back(read_physics(reader, parameters, outside, problems));
     places.states.push_back({reader.place(), true});
     reader.optional_value("states");
     return state_machine;
