@@ -34,7 +34,8 @@ class SceneWriter {
         random_of_crowds_(seed ^ 0xd6e8feb8U),
         random_of_fields_(seed ^ 0xc2b2ae35U),
         random_of_bodies_(seed ^ 0x165667b1U),
-        random_of_shells_(seed ^ 0x27d4eb2fU) {
+        random_of_shells_(seed ^ 0x27d4eb2fU),
+        random_of_parameters_(seed ^ 0x68e31da4U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -55,6 +56,7 @@ class SceneWriter {
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
+    if (matter_ == Matter::kAnything) perhaps_add_changing_link();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
@@ -703,6 +705,52 @@ step: {{rate_hz: {}, integrator: {}{}}}
     links_ += "  - {liaison: confines, between: [wall, \"p[0]\"], rest_m: 0.1}\n";
   }
 
+  /// A number about 1 that changes, above 0 or not.
+  std::string changing_number() {
+    const auto between = [this](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_of_parameters_()) / 4294967296.0;
+    };
+    const double swing = between(-0.9, 0.9);
+    const double rate = std::pow(10.0, between(0.0, 3.0));
+    switch (random_of_parameters_() % 7) {
+      case 0:
+      case 1:
+        return fmt::format("(1 + {:.3g} * sin({:.4g} * time_s))", swing, rate);
+      case 2:
+        return fmt::format("(1 - {:.3g} * exp(-{:.4g} * time_s))", swing, rate);
+      case 3:
+        return fmt::format("(1 + {:.3g} * min({:.4g} * time_s, 1))", swing, rate);
+      case 4:
+        return fmt::format("(1 + {:.3g} * tanh({:.4g} * middle))", swing, rate);
+      case 5:
+        return fmt::format("(1 - {:.3g} * min(fastest, 1))", swing);
+      default:
+        return fmt::format("(1 + {:.3g} * middle)", swing);
+    }
+  }
+
+  /// In an eighth of the scenes a link whose parameters follow time or signals.
+  void perhaps_add_changing_link() {
+    const auto number = [this] {
+      return static_cast<double>(random_of_parameters_()) / 4294967296.0;
+    };
+    if (number() > 0.125) return;
+    const double stiffness = 5.0 * std::pow(600.0, number());
+    std::string keys =
+        fmt::format("stiffness_n_per_m: \"{:.4g} * {}\"", stiffness, changing_number());
+    std::string kind = "spring";
+    if (number() < 0.6) {
+      kind = "spring_damper";
+      keys += fmt::format(", viscosity_n_s_per_m: \"{:.4g} * {}\"", std::pow(1e4, number() - 0.8),
+                          changing_number());
+    }
+    if (number() < 0.4) {
+      keys += fmt::format(", rest_m: \"{:.4g} * {}\"", 0.05 + 0.3 * number(), changing_number());
+    }
+    liaisons_ += "  changing: {kind: " + kind + ", " + keys + "}\n";
+    links_ += "  - {liaison: changing, between: [wall, \"p[0]\"]}\n";
+  }
+
   double crowd_between(double low, double high) {
     return low + (high - low) * static_cast<double>(random_of_crowds_()) / 4294967296.0;
   }
@@ -1070,6 +1118,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_fields_;       // likewise
   std::mt19937 random_of_bodies_;       // likewise
   std::mt19937 random_of_shells_;       // likewise
+  std::mt19937 random_of_parameters_;   // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses
