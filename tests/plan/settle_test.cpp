@@ -88,6 +88,29 @@ TEST(Settle, LeavesOutWhatConditionsAskFor) {
   EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
 }
 
+TEST(Settle, TakesLawsOfTheTimeAsTheyAreAtTheStart) {
+  NetworkDescription network = chain(2, false);
+  network.mats[1].position = Vec3(0, -kRest, 0);
+  network.variables.emplace_back();
+  network.variables[0].quantity = engine::VariableKind::kTime;
+  engine::Expression pull;  // (0.5 + time) N upwards
+  pull.program.code = {{engine::Operation::kConstant, {}, 0.5, 0},
+                       {engine::Operation::kVariable, {}, 0.0, 0},
+                       {engine::Operation::kAdd, {}, 0.0, 0}};
+  engine::StateMachine machine;
+  machine.states.resize(1);
+  machine.states[0].elasticity = pull;
+  network.state_machines.push_back(machine);
+  network.state_links.push_back({0, 1, 0, kRest});
+  EXPECT_FALSE(plan::rest_is_open(network));
+
+  const Settled rest = settle(network, 1e-9, 200'000);
+
+  EXPECT_NEAR(rest.position[1].y(), -kRest - (kMass * kG - 0.5) / kStiffness, 1e-9);
+  network.variables[0].quantity = engine::VariableKind::kPosition;
+  EXPECT_TRUE(plan::rest_is_open(network));
+}
+
 TEST(Settle, LeavesOutWhatSignalsAskFor) {
   NetworkDescription network = chain(2, false);
   network.mats[1].position = Vec3(0, -kRest, 0);

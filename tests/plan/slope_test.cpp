@@ -318,5 +318,43 @@ TEST(Slope, OfASurfaceIsNotCertainWhereItPullsDeepWithin) {
   EXPECT_FALSE(is_certain(-0.035, 1.0)) << "5 mm within";
 }
 
+/// A spring in 1 dimension whose stiffness is 100 times a term of a variable, the time or the place of its end.
+plan::LiaisonGraph graph_of_changing(const Term& factor, engine::VariableKind asked) {
+  NetworkDescription scene = oscillator(0.1, 0.0, 0.0, 0.1, 0.0, 1e-4);
+  scene.links.clear();
+  scene.variables.emplace_back();
+  scene.variables[0].quantity = asked;
+  scene.variables[0].index = 1;
+  scene.variables[0].direction = Vec3::UnitX();
+  scene.state_machines = {
+      state_machine(0.0, expression_law(Term(100.0) * factor * q(Quantity::kElongation)))};
+  scene.state_links = {{0, 1, 0, 0.0}};
+  return plan::liaison_graph(scene);
+}
+
+TEST(Slope, OfAParameterThatChangesIsThatOfItsWorstValue) {
+  Term asked(0.0);
+  asked.program.code = {{engine::Operation::kVariable, {}, 0.0, 0}};
+  const auto of_time = [](const Term& factor) {
+    return graph_of_changing(factor, engine::VariableKind::kTime);
+  };
+  const auto wave = of_time(Term(1.0) + Term(0.5) * one(Operation::kSin, asked));
+  EXPECT_FALSE(wave.uncertainty.has_value());
+  EXPECT_NEAR(wave.edges[0].stiffness, 150.0, 1e-9);
+  const auto fading = of_time(one(Operation::kExp, one(Operation::kNegate, asked)));
+  EXPECT_FALSE(fading.uncertainty.has_value());
+  EXPECT_NEAR(fading.edges[0].stiffness, 100.0, 1e-9);
+
+  EXPECT_TRUE(of_time(Term(1.0) + asked).uncertainty.has_value()) << "stiffer without an end";
+  EXPECT_TRUE(of_time(one(Operation::kSin, asked)).uncertainty.has_value()) << "drives apart";
+
+  const Term clamped = two(Operation::kMax, Term(0.0), two(Operation::kMin, asked, Term(1.0)));
+  const auto at_most_1 = graph_of_changing(clamped, engine::VariableKind::kPosition);
+  EXPECT_FALSE(at_most_1.uncertainty.has_value());
+  EXPECT_NEAR(at_most_1.edges[0].stiffness, 100.0, 1e-9);
+  const auto of_place = graph_of_changing(Term(1.0) + asked, engine::VariableKind::kPosition);
+  EXPECT_TRUE(of_place.uncertainty.has_value());
+}
+
 }  // namespace
 }  // namespace cordis::test
