@@ -309,6 +309,33 @@ TEST(Certificate, HoldsForStiffHeavyDampersThatTurn) {
   }
 }
 
+/// Two masses on a heavy damper that turns by this angle in a step, one of them on a stiff spring.
+NetworkDescription pair_that_turns(double angle, double viscosity) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  scene.step = 1e-3;
+  const double speed = 0.5 * angle / scene.step;
+  scene.mats = {mass(0.1, Vec3::Zero()), mass(0.1, Vec3(1, 0, 0)), fixed(Vec3(1, 0, 0))};
+  scene.mats[0].velocity = Vec3(0, -speed, 0);
+  scene.mats[1].velocity = Vec3(0, speed, 0);
+  scene.links = {{0, 1, 0.0, viscosity, 0.0}, {1, 2, 1e5, 0.0, 0.0}};  // K' = 1
+  return scene;
+}
+
+TEST(Certificate, IsNotGivenToHeavyDampersThatTurnByMoreThanHalfARadianInAStep) {
+  for (const double viscosity : {1e3, 1e6}) {  // Z' = 20, 20000
+    const NetworkDescription slow = pair_that_turns(0.1, viscosity);
+    EXPECT_FALSE(stability_at_start(slow).uncertainty.has_value());
+    World world = make_world(slow);
+    const double begin = world.energy().total();
+    run(world, 8000);
+    EXPECT_LT(world.energy().kinetic + world.energy().elastic, 1.3 * begin);
+  }
+  EXPECT_NE(why_uncertain(pair_that_turns(0.8, 1e6)).find("0.5 rad"), std::string::npos);
+  EXPECT_FALSE(stability_at_start(pair_that_turns(0.8, 10.0)).uncertainty.has_value());  // Z' = 0.2
+}
+
 TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {
   NetworkDescription scene;
   scene.dimension = 2;

@@ -10,6 +10,8 @@ namespace cordis::engine {
 namespace {
 
 constexpr double kG = kImplicitDampingShare;
+constexpr double kMostSine = 0.5;   // of the turn of a damper in a step
+constexpr double kSlowTurn = 0.01;  // up to which the first k is good enough
 
 /// A network whose M + dt Z + dt^2 K is M + g dt Z of this one.
 NetworkDescription dampers_alone(const NetworkDescription& network) {
@@ -29,6 +31,7 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
       displacement_(4 * network.mats.size(), 0.0),
       drag_of_ports_(displacement_.size(), 0.0),
       turning_(displacement_.size(), 0.0),
+      turning_at_end_(displacement_.size(), 0.0),
       constant_(displacement_.size(), 0.0),
       kick_(displacement_.size(), 0.0),
       first_(displacement_.size(), 0.0),
@@ -60,22 +63,26 @@ void ImplicitDamping::find_axes(const MatArray& mats) noexcept {
   }
 }
 
-/// Ends that keep their distance d go by d sin t across, and by d (1 - cos t) = k / 2 along, as they turn by t. They cannot where they
-/// go farther across than d: k stays at its largest.
-void ImplicitDamping::find_turning() noexcept {
-  if (is_1d_) return;
-  std::fill(turning_.begin(), turning_.end(), 0.0);
+/// Finds dt Z k. @return the sine of the largest turn
+/// Ends that keep their distance d go by d sin t across, and by d (1 - cos t) = k / 2 along, as they turn by t. Beyond
+/// 30 degrees in a step k stays as it is: what turns so fast is not certain.
+double ImplicitDamping::find_turning(const AlignedVector<double>& displacement,
+                                     AlignedVector<double>& turning) const noexcept {
+  if (is_1d_) return 0.0;
+  double largest = 0.0;
+  std::fill(turning.begin(), turning.end(), 0.0);
   for (const Damper& damper : dampers_) {
     if (damper.isotropic || damper.length == 0.0) continue;
-    const Vec3 apart = column(displacement_, damper.b) - column(displacement_, damper.a);
+    const Vec3 apart = column(displacement, damper.b) - column(displacement, damper.a);
     const Vec3 across = apart - dot(damper.axis, apart) * damper.axis;
-    const double square = damper.length * damper.length;
-    const double cosine = std::sqrt(std::max(square - dot(across, across), 0.0));
-    const double k = 2.0 * (damper.length - cosine);
+    const double sine = std::min(std::sqrt(dot(across, across)) / damper.length, kMostSine);
+    largest = std::max(largest, sine);
+    const double k = 2.0 * damper.length * (1.0 - std::sqrt(1.0 - sine * sine));
     const Vec3 force = (damper.viscosity * k) * damper.axis;
-    column(turning_, damper.a) -= force;
-    column(turning_, damper.b) += force;
+    column(turning, damper.a) -= force;
+    column(turning, damper.b) += force;
   }
+  return largest;
 }
 
 /// Adds the forces with which dampers resist these displacements [kg m].
@@ -96,7 +103,6 @@ void ImplicitDamping::begin_step(const MatArray& mats, const AlignedVector<doubl
   find_axes(mats);
   matrix_.assemble(mats);
   displacement_ = displacement;  // the same size: no allocation
-  find_turning();
   first_period_ = first;
   last_kick_ = last_kick;
   std::fill(constant_.begin(), constant_.end(), 0.0);
@@ -126,22 +132,37 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
   const double begin_of_period = first_period_ ? 0.0 : -0.5;  // from the moment of x(n), in periods
+  const double at_first = begin_of_period + kG;
+  const double at_end = begin_of_period + 1.0;
+  const auto expect = [&](double share, double ahead) {
+    for (std::size_t i = 0; i < count; ++i) {
+      column(middle_, i) = column(displacement_, i);
+      if (mass_[i] > 0.0) column(middle_, i) += share * kick_at(i, ahead);
+    }
+  };
+  expect(kG, kG - 0.5);
+  find_turning(middle_, turning_);
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
-                        column(drag_of_ports_, i) -
-                        (kG * (begin_of_period + kG)) * column(turning_, i);
+                        column(drag_of_ports_, i) - (kG * at_first) * column(turning_, i);
   }
   matrix_.solve(first_.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    if (mass_[i] == 0.0) continue;
-    const Vec3 begin = column(displacement_, i);
-    column(second_, i) =
-        mass_[i] *
-            (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) + kG * kick_at(i, 0.5)) -
-        column(drag_of_ports_, i) - (kG * (begin_of_period + 1.0)) * column(turning_, i);
+  expect(1.0, 0.5);
+  for (const bool is_first_guess : {true, false}) {
+    const double sine = find_turning(middle_, turning_at_end_);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (mass_[i] == 0.0) continue;
+      const Vec3 begin = column(displacement_, i);
+      column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
+                                       kG * kick_at(i, 0.5)) -
+                           column(drag_of_ports_, i) - (kG * at_end) * column(turning_at_end_, i);
+    }
+    matrix_.solve(second_.data());
+    if (!is_first_guess || sine < kSlowTurn) break;
+    for (std::size_t i = 0; i < count; ++i)
+      if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
   }
-  matrix_.solve(second_.data());
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = mass_[i] > 0.0
                              ? Vec3((1.0 - kG) * column(first_, i) + kG * column(second_, i))
@@ -201,9 +222,11 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
               : Vec3(2.0 * kG * (1.0 - kG) * column(first_, i) + kG * kG * column(second_, i));
     }
   }
-  // The shares of u1 and u2 in w take nothing of what turns, those in the mean velocity do.
-  const double share_of_turning = first ? kG * kG * (3.0 - 2.0 * kG) : 0.0;
-  for (std::size_t i = 0; i < drag_.size(); ++i) drag_[i] = share_of_turning * turning_[i];
+  const double begin_of_period = first ? 0.0 : -0.5;
+  const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period + kG);
+  const double of_end = (first ? kG : 1.0) * kG * (begin_of_period + 1.0);
+  for (std::size_t i = 0; i < drag_.size(); ++i)
+    drag_[i] = of_first * turning_[i] + of_end * turning_at_end_[i];
   add_drag_of_links(middle_, drag_);
   const double rate = 1.0 / dt_;
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];

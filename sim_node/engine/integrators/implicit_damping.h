@@ -24,9 +24,10 @@ namespace cordis::engine {
 /// and angular momentum are kept to rounding; the rounding of a velocity grows with Z dt / m.
 /// Stable while dt^2 K < 3.852 M, however large Z is (implicit_damping_limit).
 ///
-/// A damper pulls along its axis a at x(n), and turns meanwhile. Its ends part at the moment n + c by
-/// a u + c k, with k = dt |v_across|^2 / length: c is g - 1/2 for u1 and 1/2 for u2. So a heavy damper that
-/// turns keeps its length to second order, and w is as it was.
+/// A damper pulls along its axis a at x(n), and turns meanwhile. At the moment n + c its ends part by a u + c k:
+/// c is g - 1/2 for u1 and 1/2 for u2. Ends that keep their length part by -k / 2 along, from what u2 goes
+/// across. k is that of v and the kicks for u1 and a first u2, and that of this u2 for u2. So a heavy damper that
+/// turns keeps its length. Where all turn by less than 0.01 rad the first u2 is the last.
 ///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
 /// take from x(0) to the moment 1/2, with the damping force I / dt and A = (M + g dt Z)^-1 M,
@@ -56,7 +57,7 @@ class ImplicitDamping {
 
   /// Finds dt w under the forces of the MATs.
   /// @param external  forces from outside to be added to them; null: they have been
-  /// Real time: two solves, no allocation.
+  /// Real time: two solves, three where a damper turns by more than 0.01 rad; no allocation.
   void find_velocities(const MatArray& mats, const PortInputs* external) noexcept;
   /// dt^2 (f(n) / m + g) of the masses, without what is constant over the period.
   const AlignedVector<double>& kick() const noexcept { return kick_; }
@@ -95,7 +96,8 @@ class ImplicitDamping {
   };
 
   void find_axes(const MatArray& mats) noexcept;
-  void find_turning() noexcept;
+  double find_turning(const AlignedVector<double>& displacement,
+                      AlignedVector<double>& turning) const noexcept;
   void find_carried_forces(const MatArray& mats) noexcept;
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
@@ -109,8 +111,9 @@ class ImplicitDamping {
   StiffnessMatrix matrix_;                // M + g dt Z
   AlignedVector<double> displacement_;    // dt v(n-1/2)
   AlignedVector<double> drag_of_ports_;   // g dt Z of their displacements, on the masses [kg m]
-  AlignedVector<double> turning_;   // dt Z k of dampers along their axes, on the masses [kg m]
-  AlignedVector<double> constant_;  // forces [N]
+  AlignedVector<double> turning_;  // dt Z k of dampers along their axes, on the masses [kg m]
+  AlignedVector<double> turning_at_end_;  // likewise at u2
+  AlignedVector<double> constant_;        // forces [N]
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   bool first_period_ = false;
