@@ -217,31 +217,50 @@ std::string support_text(const sim::DeviceAtPort& device) {
                                              : "see below");
 }
 
+/// What is said of a port, without its name.
 std::string port_text(const SceneCheck& check, const PortCheck& port) {
   const double rate = check.scene.gesture_rate_hz;
-  const int delay_periods = check.delay_periods;
+  const int delay_periods = port.delay_periods;
   const std::string delay = config::count_text(static_cast<std::size_t>(delay_periods), "period");
   const std::string of_viscosity =
       delay_periods == 0 ? std::string()
                          : fmt::format(" and as its own viscosity divided by {:.3g} ms",
                                        1e3 * delay_periods / rate);
-  const std::string who =
-      fmt::format("port        {} ({}): ", port.port->name, place_text(port.port->place));
   if (port.port->role == scene::Role::kLiaison) {
-    return who +
-           fmt::format("a hand may be as stiff as {:.4g} N/m{}, at {:.4g} Hz and {} of delay\n",
+    return fmt::format("a hand may be as stiff as {:.4g} N/m{}, at {:.4g} Hz and {} of delay\n",
                        port.largest_hand_stiffness, of_viscosity, rate, delay) +
            needs_text(port.port->needs);
   }
-  std::string text =
-      who + fmt::format(
-                "{:.4g} N/m and {:.3g} N s/m; with any hand safe from {:.3g} N s/m of the device "
-                "on, at {:.4g} Hz and {} of delay\n",
-                port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
+  std::string text = fmt::format(
+      "{:.4g} N/m and {:.3g} N s/m; with any hand safe from {:.3g} N s/m of the device "
+      "on, at {:.4g} Hz and {} of delay\n",
+      port.load.stiffness, port.load.viscosity, port.min_device_viscosity, rate, delay);
   for (const sim::DeviceAtPort& device : port.devices) {
     text += fmt::format("            the device of {} {}\n", device.node, support_text(device));
   }
   return text + needs_text(port.port->needs);
+}
+
+/// A paragraph for each port; one for those that follow each other and have the same.
+std::string ports_text(const SceneCheck& check) {
+  std::string text;
+  for (std::size_t first = 0; first < check.ports.size();) {
+    const scene::Port& port = *check.ports[first].port;
+    const std::string place = place_text(port.place);
+    const std::string what = port_text(check, check.ports[first]);
+    std::size_t last = first + 1;
+    while (last < check.ports.size() && place_text(check.ports[last].port->place) == place &&
+           port_text(check, check.ports[last]) == what) {
+      ++last;
+    }
+    const std::size_t count = last - first;
+    const std::string who = count == 1 ? port.name
+                                       : fmt::format("{} ports {} to {}", count, port.name,
+                                                     check.ports[last - 1].port->name);
+    text += fmt::format("port        {} ({}): {}", who, place, what);
+    first = last;
+  }
+  return text;
 }
 
 /// The clock for a scene that has more time than the wall: simulated hands wait for it.
@@ -328,7 +347,7 @@ nlohmann::json ports_json(const SceneCheck& check) {
                         {"device", port.port->device},
                         {"stiffness_n_per_m", port.load.stiffness},
                         {"viscosity_n_s_per_m", port.load.viscosity},
-                        {"delay_periods", check.delay_periods}};
+                        {"delay_periods", port.delay_periods}};
     if (port.port->role == scene::Role::kMass) {
       json["role"] = "mass";
       json["min_device_viscosity_n_s_per_m"] = port.min_device_viscosity;
@@ -418,7 +437,7 @@ std::string text_of(const SceneCheck& check) {
   text += freezing_text(scene.network.freeze_tolerance);
   if (scene.settled) text += "settled     " + sim::settled_text(scene) + "\n";
   text += choice_text(check) + stability_text(check) + accuracy_text(check) + contact_text(check);
-  for (const PortCheck& port : check.ports) text += port_text(check, port);
+  text += ports_text(check);
   return check.measured_steps > 0 ? text + load_text(check) : text;
 }
 

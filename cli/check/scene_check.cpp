@@ -19,13 +19,17 @@ namespace cordis::cli {
 namespace {
 
 PortCheck check_port(const SceneCheck& check, const plan::LiaisonGraph& graph,
-                     const scene::Port& port) {
+                     const scene::Port& port, std::vector<sim::DeviceAtPort> devices) {
   const scene::Scene& scene = check.scene;
-  const plan::PortLoop loop{
-      1.0 / scene.gesture_rate_hz, static_cast<double>(check.delay_periods),
-      static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
   PortCheck result;
   result.port = &port;
+  result.delay_periods = check.delay_periods;
+  for (const sim::DeviceAtPort& device : devices)
+    result.delay_periods = std::max(result.delay_periods, device.delay_periods);
+  result.devices = std::move(devices);
+  const plan::PortLoop loop{
+      1.0 / scene.gesture_rate_hz, static_cast<double>(result.delay_periods),
+      static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz))};
   result.load = sim::max_load_of(graph, scene, port);
   if (port.role == scene::Role::kMass) {
     result.min_device_viscosity = plan::min_device_viscosity(result.load, loop);
@@ -104,8 +108,11 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.problems.throw_if_any();
   check.scene = std::move(planned.scene);
   check.choice = std::move(planned.rate);
-  std::vector<sim::DeviceAtPort> devices;
-  if (launch) devices = sim::check_devices(*launch, check.scene, check.problems);
+  std::vector<std::vector<sim::DeviceAtPort>> devices(check.scene.ports.size());
+  if (launch) {
+    for (sim::DeviceAtPort& device : sim::check_devices(*launch, check.scene, check.problems))
+      devices[device.port].push_back(std::move(device));
+  }
   constexpr double kBand = 100.0;
   if (check.options.band_hz == 0.0) {
     check.options.band_hz = check.scene.accuracy ? check.scene.accuracy->band_hz : kBand;
@@ -115,11 +122,11 @@ SceneCheck check_scene(const CheckOptions& options) {
   sim::check_stability(check.scene, check.plan.stability, force, check.problems);
   if (!check.scene.ports.empty()) {
     const plan::LiaisonGraph graph = plan::liaison_graph(network);
-    for (const scene::Port& port : check.scene.ports)
-      check.ports.push_back(check_port(check, graph, port));
+    for (std::size_t port = 0; port < devices.size(); ++port) {
+      check.ports.push_back(
+          check_port(check, graph, check.scene.ports[port], std::move(devices[port])));
+    }
   }
-  for (const sim::DeviceAtPort& device : devices)
-    check.ports[device.port].devices.push_back(device);
   if (options.plan_alone) return check;
   const plan::StepLoad load = plan::measure_steps(network);
   check.step_nsec = load.median_nsec;

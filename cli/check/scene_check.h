@@ -32,6 +32,7 @@ struct CheckOptions {
 struct PortCheck {
   const scene::Port* port = nullptr;
   plan::PortLoad load;
+  int delay_periods = 0;                   ///< delay of the loop through the slowest of the devices
   double min_device_viscosity = 0.0;       ///< role mass, for any hand: what it must have [N s/m]
   double largest_hand_stiffness = 0.0;     ///< role liaison [N/m]
   std::vector<sim::DeviceAtPort> devices;  ///< devices of the launch file

@@ -146,7 +146,7 @@ void OfflineSession::load_scene(const std::string& file) {
   config::Problems problems;
   scene::Scene scene = sim::plan_scene(file, {}, problems).scene;
   problems.throw_if_any();
-  sim::check_stability(scene, /*force=*/false, problems);
+  const plan::Stability stability = sim::check_stability(scene, /*force=*/false, problems);
   problems.throw_if_any();
   for (auto port = scene.ports.begin(); port != scene.ports.end();) {
     const auto next = std::find_if(port, scene.ports.end(), [port](const scene::Port& other) {
@@ -161,12 +161,8 @@ void OfflineSession::load_scene(const std::string& file) {
     port = next;
   }
   warn(problems);
-  make(std::move(scene));
-}
-
-void OfflineSession::make(scene::Scene&& scene) {
   loaded_ = std::make_unique<sim::LoadedScene>(
-      std::make_shared<const scene::Scene>(std::move(scene)), kSimEpoch, kVersion);
+      std::make_shared<const scene::Scene>(std::move(scene)), stability, kSimEpoch, kVersion);
 }
 
 void OfflineSession::load_launch(const std::string& file,
@@ -178,7 +174,8 @@ void OfflineSession::load_launch(const std::string& file,
     sim::SimConfig config = sim::read_sim_config(launch, node, problems);
     if (problems.has_errors()) break;
     duration_s_ = config.duration_s;
-    make(std::move(config.scene));
+    loaded_ = std::make_unique<sim::LoadedScene>(
+        std::make_shared<const scene::Scene>(std::move(config.scene)), kSimEpoch, kVersion);
     if (config.force) simulation().keep_devices();
   }
   problems.throw_if_any();

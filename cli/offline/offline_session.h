@@ -104,7 +104,6 @@ class OfflineSession {
   const SimulatedDevice* device_of(const scene::Port& port) const noexcept;
   void load_launch(const std::string& file, const std::vector<std::string>& overrides);
   void load_scene(const std::string& file);
-  void make(scene::Scene&& scene);
   void warn(const config::Problems& problems);
   void watch_integration_error(const engine::Energy& energy);
 

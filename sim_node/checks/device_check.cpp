@@ -165,6 +165,7 @@ DeviceAtPort check_demand(const PortDemand& demand, const LaunchedDevice& device
   }
   DeviceAtPort result;
   result.node = device.node->name;
+  result.delay_periods = delay_periods + device.limits->delay_periods;
   result.is_supported =
       verdict.lacks.empty() && verdict.refusal.empty() && verdict.uncertainty.empty();
   if (needed) result.needed_delay_s = *needed / rate_hz;

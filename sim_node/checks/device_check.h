@@ -15,6 +15,7 @@ namespace cordis::sim {
 struct DeviceAtPort {
   std::size_t port = 0;                       ///< index in Scene::ports
   std::string node;                           ///< its name in the launch file
+  int delay_periods = 0;                      ///< delay of its loop: that of the clock and its own
   bool is_supported = false;                  ///< for certain: else a problem says what is wrong
   std::optional<double> supported_stiffness;  ///< role mass; empty: nothing is known [N/m]
   std::optional<double> needed_delay_s;  ///< it is supported once its answers are measured so fast

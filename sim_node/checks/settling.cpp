@@ -1,6 +1,8 @@
 // sim_node/checks/settling.cpp
 #include "sim_node/checks/settling.h"
 
+#include <algorithm>
+
 #include "node/assert.h"
 #include "node/config/count_text.h"
 #include "sim_node/checks/short_text.h"
@@ -8,6 +10,23 @@
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
+namespace {
+
+std::string slides_text(const scene::Scene& scene, const plan::Settled& rest) {
+  if (!rest.slides_on) return {};
+  return ", which slides on " + scene::call_mat(scene, *rest.slides_on).name;
+}
+
+/// True if contacts of the one are contacts of the other, with friction.
+bool has_same_contacts(const engine::NetworkDescription& settled,
+                       const engine::NetworkDescription& network, std::size_t set) {
+  const engine::SetLiaison& before = settled.sets[set];
+  const engine::SetLiaison& after = network.sets[set];
+  return before.set_p == after.set_p && before.set_q == after.set_q &&
+         rubs(network.state_machines[after.state_machine]);
+}
+
+}  // namespace
 
 void settle(scene::Scene& scene, config::Problems& problems) {
   if (!scene.settle) return;
@@ -19,7 +38,8 @@ void settle(scene::Scene& scene, config::Problems& problems) {
                    "leave out 'settle', or let its parameters ask for time_s alone");
     return;
   }
-  const plan::Settled rest = plan::settle(scene.network, asked.until, asked.max_steps);
+  const plan::Settled rest =
+      plan::settle(scene.network, {asked.until, asked.max_steps, asked.has_friction});
   if (!rest.is_finite) {
     problems.error(asked.place, "the scene diverges while it settles",
                    "a higher rate_hz may hold it");
@@ -37,7 +57,7 @@ void settle(scene::Scene& scene, config::Problems& problems) {
     problems.error(asked.place,
                    "the scene has not come to rest in " + config::count_text(rest.steps, "step") +
                        ": " + short_text(rest.force) + " N pull " +
-                       scene::call_mat(scene, rest.pulled).name,
+                       scene::call_mat(scene, rest.pulled).name + slides_text(scene, rest),
                    "hold what falls or slides, or write a larger until_n or steps");
     return;
   }
@@ -52,6 +72,8 @@ void settle(scene::Scene& scene, config::Problems& problems) {
     }
     scene.network.mats[i].position = rest.position[i];
   }
+  for (std::size_t s = 0; s < rest.stretches.size(); ++s)
+    scene.network.sets[s].stretches = rest.stretches[s];
   scene.settled = moved;
 }
 
@@ -59,6 +81,11 @@ void keep_settled(const scene::Scene& settled, scene::Scene& scene) {
   if (!settled.settled || settled.network.mats.size() != scene.network.mats.size()) return;
   for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
     scene.network.mats[i].position = settled.network.mats[i].position;
+  }
+  const std::size_t sets = std::min(settled.network.sets.size(), scene.network.sets.size());
+  for (std::size_t s = 0; s < sets; ++s) {
+    if (has_same_contacts(settled.network, scene.network, s))
+      scene.network.sets[s].stretches = settled.network.sets[s].stretches;
   }
   scene.settled = settled.settled;
 }

@@ -55,9 +55,10 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
 
 }  // namespace
 
-void check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
-  check_stability(scene, plan::stability_of(scene.network, plan::liaison_graph(scene.network)),
-                  force, problems);
+plan::Stability check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
+  plan::Stability stability = plan::stability_of(scene.network, plan::liaison_graph(scene.network));
+  check_stability(scene, stability, force, problems);
+  return stability;
 }
 
 void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,

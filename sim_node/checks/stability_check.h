@@ -13,7 +13,8 @@ namespace cordis::sim {
 /// Holds the step of a scene against its limits: an error where it surely diverges, unless forced
 /// (then a warning); a warning where it is not certified in every pose and state. The place is that
 /// of the liaison that sets the limit. `cordis check` says more.
-void check_stability(const scene::Scene& scene, bool force, config::Problems& problems);
+/// @return the stability of its network
+plan::Stability check_stability(const scene::Scene& scene, bool force, config::Problems& problems);
 /// @param stability  of its network: of a large one it takes seconds to find
 void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,
                      config::Problems& problems);

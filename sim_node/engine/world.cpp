@@ -180,6 +180,11 @@ void World::visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner
   state_->sets.set(set).visit_bound_pairs(state_->table, visit, owner);
 }
 
+std::vector<StartStretch> World::contact_stretches(std::size_t set) const {
+  CORDIS_ASSERT(set < network().description().sets.size());
+  return std::as_const(state_->sets).set(set).contact_stretches();
+}
+
 PartnerCount World::largest_partners(std::size_t set) const noexcept {
   return std::as_const(state_->sets).set(set).largest_partners();
 }

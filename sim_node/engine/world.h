@@ -116,6 +116,10 @@ class World {
   /// Shows them one by one. Real time: O(pairs), no allocation. Precondition: the set exists.
   void visit_bound_pairs(std::size_t set, VisitBoundPair visit, void* owner) const;
 
+  /// What the friction of the contacts of a set remembers after the last step, by their members: the start
+  /// of another world that goes on with it. Not in real time: allocates. Precondition: the set exists.
+  std::vector<StartStretch> contact_stretches(std::size_t set) const;
+
   /// The largest numbers of partners in the last step, or at the start. Real time: O(1).
   /// Precondition: the set exists.
   PartnerCount largest_partners(std::size_t set) const noexcept;

@@ -10,6 +10,7 @@
 #include "node/assert.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/start_pairs.h"
 
 namespace cordis::plan {
 namespace {
@@ -43,7 +44,7 @@ void stop_time(engine::Law& law) {
 }
 
 /// The network without all that acts only while something moves.
-NetworkDescription undamped(NetworkDescription network) {
+NetworkDescription undamped(NetworkDescription network, bool has_friction) {
   network.integrator = engine::IntegratorKind::kCordis;
   network.freeze_tolerance = 0.0;
   network.kept_awake.clear();
@@ -62,9 +63,9 @@ NetworkDescription undamped(NetworkDescription network) {
   for (engine::Bend& bend : network.bends) bend.viscosity = 0.0;
   for (engine::StateMachine& state_machine : network.state_machines) {
     state_machine = start_state_alone(state_machine);
-    state_machine.friction = {};
+    state_machine.friction.viscosity = 0.0;
+    if (!has_friction) state_machine.friction = {};
     for (engine::LinkState& state : state_machine.states) {
-      state.friction.reset();
       state.viscosity = 0.0;
       state.dissipation = engine::NoLaw{};
       stop_time(state.elasticity);
@@ -80,7 +81,16 @@ NetworkDescription undamped(NetworkDescription network) {
   network.variables.clear();  // which the conditions asked for that are gone
   network.contacts.clear();   // and what signals ask for
   network.groups.clear();
+  if (!has_friction) {
+    for (engine::SetLiaison& set : network.sets) set.stretches.clear();
+  }
   return network;
+}
+
+bool rubs(const NetworkDescription& network) {
+  return std::ranges::any_of(network.sets, [&](const engine::SetLiaison& set) {
+    return engine::rubs(network.state_machines[set.state_machine]);
+  });
 }
 
 /// Weights and driven forces of the start [N], per MAT.
@@ -95,15 +105,19 @@ std::vector<Vec3> loads_of(const NetworkDescription& network) {
 /// A network that is held still again and again.
 class Rest {
  public:
-  explicit Rest(const NetworkDescription& network)
-      : network_(undamped(network)), driven_(loads_of(network)) {}
+  Rest(const NetworkDescription& network, bool has_friction)
+      : network_(undamped(network, has_friction)),
+        driven_(loads_of(network)),
+        has_friction_(rubs(network_)),
+        slides_on_(network.mats.size()) {}
 
   /// Holds it still where it is, and does a first step: the forces are those of this pose.
   void hold() {
-    if (world_) {
-      for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
-        network_.mats[i].position = world_->position(i);
-      }
+    if (world_ && has_friction_) {
+      place_at(before_);
+      keep_friction();
+    } else if (world_) {
+      place_at(world_->positions());
     }
     world_.emplace(std::make_shared<const engine::Network>(network_));
     step();
@@ -112,6 +126,7 @@ class Rest {
   /// One step. @return false where a position is not finite any more
   bool step() {
     ++steps_;
+    if (has_friction_) before_ = world_->positions();
     const engine::StepReport report = world_->step();
     if (report.wants_room) world_->make_room();
     is_finite_ = is_finite_ && report.non_finite_mats == 0;
@@ -131,6 +146,7 @@ class Rest {
   /// What pulls the most just after hold(), and where all is.
   Settled pose() const {
     Settled pose;
+    for (const engine::SetLiaison& set : network_.sets) pose.stretches.push_back(set.stretches);
     pose.steps = steps_;
     pose.is_finite = is_finite_;
     for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
@@ -143,32 +159,57 @@ class Rest {
       pose.force = force;
       pose.pulled = i;
     }
+    pose.slides_on = slides_on_[pose.pulled];
     return pose;
   }
 
   std::uint64_t steps() const noexcept { return steps_; }
 
  private:
+  void place_at(const Eigen::Ref<const Eigen::Matrix4Xd>& positions) {
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      network_.mats[i].position = positions.col(i).head<3>();
+    }
+  }
+
+  void keep_friction() {
+    std::ranges::fill(slides_on_, std::nullopt);
+    for (std::size_t s = 0; s < network_.sets.size(); ++s) {
+      engine::SetLiaison& set = network_.sets[s];
+      set.stretches = world_->contact_stretches(s);
+      for (const engine::StartStretch& contact : set.stretches) {
+        if (!contact.slides) continue;
+        const std::uint32_t a = mat_of(set, contact.member_a);
+        const std::uint32_t b = mat_of(set, contact.member_b);
+        slides_on_[a] = b;
+        slides_on_[b] = a;
+      }
+    }
+  }
+
   NetworkDescription network_;
   std::vector<Vec3> driven_;  // force on each [N]
+  bool has_friction_;
+  Eigen::Matrix4Xd before_;  // positions with the forces and the friction of the last step [m]
+  std::vector<std::optional<std::uint32_t>> slides_on_;  // each, as it was held
   std::optional<engine::World> world_;
   std::uint64_t steps_ = 0;
   bool is_finite_ = true;
 };
 
 /// At the step of the network, from its start.
-Settled try_to_settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+Settled try_to_settle(const NetworkDescription& network, const Settling& asked) {
   constexpr int kMaxHolds = 200;      // without less force; what still falls takes below 40
   constexpr double kLess = 0.99;      // of the least so far
   constexpr double kRounding = 1e-8;  // of the largest so far
-  Rest rest(network);
+  Rest rest(network, asked.has_friction);
   double largest = 0.0;
   double least = std::numeric_limits<double>::infinity();
   int holds = 0;
   for (;;) {
     rest.hold();
     Settled pose = rest.pose();
-    if (!pose.is_finite || pose.force < until || rest.steps() >= max_steps) return pose;
+    if (!pose.is_finite || pose.force < asked.until || rest.steps() >= asked.max_steps) return pose;
     largest = std::max(largest, pose.force);
     ++holds;
     if (pose.force < kLess * least) {
@@ -178,7 +219,7 @@ Settled try_to_settle(const NetworkDescription& network, double until, std::uint
     pose.is_rounding = holds > kMaxHolds && pose.force < kRounding * largest;
     if (pose.is_rounding) return pose;
     double before = 0.0;
-    for (double now = rest.kinetic_energy(); now >= before && rest.steps() < max_steps;
+    for (double now = rest.kinetic_energy(); now >= before && rest.steps() < asked.max_steps;
          now = rest.kinetic_energy()) {
       before = now;
       if (!rest.step()) return rest.pose();
@@ -202,14 +243,17 @@ bool rest_is_open(const NetworkDescription& network) {
   return std::ranges::any_of(network.state_machines, asks_for_more);
 }
 
-Settled settle(const NetworkDescription& network, double until, std::uint64_t max_steps) {
+Settled settle(const NetworkDescription& network, const Settling& asked) {
   CORDIS_ASSERT(!rest_is_open(network));
-  Settled pose = try_to_settle(network, until, max_steps);
+  Settled pose = try_to_settle(network, asked);
   NetworkDescription finer = network;
+  Settling left = asked;
   std::uint64_t steps = pose.steps;
-  for (int halving = 0; halving < kMaxHalvings && !pose.is_finite && steps < max_steps; ++halving) {
+  for (int halving = 0; halving < kMaxHalvings && !pose.is_finite && steps < asked.max_steps;
+       ++halving) {
     finer.step *= 0.5;
-    pose = try_to_settle(finer, until, max_steps - steps);
+    left.max_steps = asked.max_steps - steps;
+    pose = try_to_settle(finer, left);
     steps += pose.steps;
   }
   pose.steps = steps;

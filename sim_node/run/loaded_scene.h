@@ -21,6 +21,9 @@ struct LoadedScene {
   /// @param version  of the description that its frames belong to
   LoadedScene(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch,
               std::uint64_t version);
+  /// @param stability  of the scene, which is not found again
+  LoadedScene(const std::shared_ptr<const scene::Scene>& scene, const plan::Stability& stability,
+              std::uint64_t epoch, std::uint64_t version);
 
   /// True if the run of this scene needs its energy.
   bool watches_energy() const noexcept { return !is_certain || may_turn || !reach.is_infinite(); }
@@ -45,10 +48,6 @@ struct LoadedScene {
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified
   std::shared_ptr<ShadowWorld> shadow;
   std::uint64_t ticks_per_frame;
-
- private:
-  LoadedScene(const std::shared_ptr<const scene::Scene>& scene, const plan::Stability& stability,
-              std::uint64_t epoch, std::uint64_t version);
 };
 
 }  // namespace cordis::sim

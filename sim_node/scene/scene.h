@@ -109,6 +109,7 @@ struct Accuracy {
 struct Settle {
   double until = 0.0;                 ///< no mass is pulled by more [N]
   std::uint64_t max_steps = 200'000;  ///< it takes no more of them
+  bool has_friction = true;           ///< false: contacts slide freely while it settles
   config::Place place;
 };
 

@@ -347,6 +347,43 @@ ports:
   EXPECT_EQ(out_.find("the device of"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, PortsThatFollowEachOtherAndAreAlikeHaveOneParagraph) {
+  const auto keys = [&](const std::string& other) {
+    std::ofstream(path_) << R"(cordis: 1
+name: keys
+space: 2
+step: {rate_hz: 5000}
+parts:
+  key: {ports: {finger: {device: keyboard, axes: [0], role: mass, at_m: [0, 0.1], along: y, needs: {force_n: 2}}}}
+matter:
+  keys: {part: key, repeat: {count: 16, translate_m: [0.05, 0]}}
+  bob: {kind: mass, mass_kg: 1, at_m: [0, 0.2]}
+liaisons: {pad: {kind: spring_damper, stiffness_n_per_m: 10, viscosity_n_s_per_m: 0.1}}
+links: [{liaison: pad, between: [")"
+                         << other << "\", bob]}]\n";
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    std::size_t ports = 0;
+    for (std::size_t line = out_.find("\nport "); line != std::string::npos;
+         line = out_.find("\nport ", line + 1)) {
+      ++ports;
+    }
+    return ports;
+  };
+  EXPECT_EQ(keys("keys[0].finger.handle"), 1u) << out_;
+  EXPECT_NE(
+      out_.find("\nport        16 ports keys[0].finger to keys[15].finger (" + path_ + ":6): "),
+      std::string::npos)
+      << out_;
+  EXPECT_EQ(keys("keys[5].finger"), 3u) << out_;
+  EXPECT_NE(out_.find("\nport        5 ports keys[0].finger to keys[4].finger ("),
+            std::string::npos)
+      << out_;
+  EXPECT_NE(out_.find("\nport        keys[5].finger ("), std::string::npos) << out_;
+  EXPECT_NE(out_.find("\nport        10 ports keys[6].finger to keys[15].finger ("),
+            std::string::npos)
+      << out_;
+}
+
 /// A launch file beside the scene, with a device of rate 10 Hz and this viscosity.
 class CheckedLaunch : public Checked {
  protected:
@@ -363,14 +400,16 @@ ports:
     std::remove(scene_.c_str());
     std::remove(device_.c_str());
   }
-  void launch(const std::string& clock, const std::string& viscosity) const {
+  void launch(const std::string& clock, const std::string& viscosity,
+              const std::string& more = "") const {
     std::ofstream(device_) << R"(cordis: 1
 driver: mock
 axes: 1
 rate_hz: 10
 moving_mass_kg: 1
 viscosity_n_s_per_m: )" << viscosity
-                           << "\n";
+                           << "\n"
+                           << more;
     std::ofstream(path_) << R"(cordis: 1
 session: checked
 clock: )" << clock
@@ -402,6 +441,16 @@ TEST_F(CheckedLaunch, IsJudgedAtItsDevicesAndItsClock) {
   EXPECT_EQ(json["ports"][0]["devices"][0]["node"], "keyboard");
   EXPECT_EQ(json["ports"][0]["devices"][0]["supported"], true);
   EXPECT_TRUE(json["problems"].empty());
+}
+
+TEST_F(CheckedLaunch, ThePortCountsTheDelayThatItsDeviceAdds) {
+  launch("lockstep", "200", "delay_periods: 1\n");
+  // K (T / 2 + d T) with T = 0.1 s: 150 N s/m with one period of delay, 50 without
+  const std::string text = text_of(check());
+  EXPECT_NE(text.find("safe from 150 N s/m of the device on"), std::string::npos) << text;
+  EXPECT_NE(text.find("and 1 period of delay\n"), std::string::npos) << text;
+  const nlohmann::json json = nlohmann::json::parse(json_of(check({"clock=realtime"})));
+  EXPECT_EQ(json["ports"][0]["delay_periods"], 2);
 }
 
 TEST_F(CheckedLaunch, ADeviceThatThePortIsTooStiffForIsRefusedAsByARun) {

@@ -494,6 +494,85 @@ TEST(Friction, TakesOtherParametersWhileItHolds) {
   EXPECT_THROW(world.replace_state_machine(0, softer), std::invalid_argument);
 }
 
+/// A block that an incline holds: its stretch carries the weight along the slope.
+NetworkDescription standing_block(double angle) {
+  NetworkDescription scene = block_on_incline(angle, {1.0, 0.8, 1e5, 200.0});
+  scene.sets[0].stretches = {{0, 1, false, Vec3(kGravity * std::sin(angle) / 1e5, 0.0, 0.0)}};
+  return scene;
+}
+
+TEST(Friction, HoldsFromTheStartWhatItIsSaidToHold) {
+  const NetworkDescription scene = standing_block(0.6);
+  const Vec3 start = scene.mats[0].position;
+  World world = make_world(scene);
+  run(world, rounds(200'000));
+  EXPECT_LT((world.position(0) - start).norm(),
+            1e-15);  // rounding of the forces, 1e-15 N, over 1e5 N/m
+  const std::vector<engine::StartStretch> end = world.contact_stretches(0);
+  ASSERT_EQ(end.size(), 1u);
+  EXPECT_EQ(end[0].member_a, 0u);
+  EXPECT_EQ(end[0].member_b, 1u);
+  EXPECT_FALSE(end[0].slides);
+  EXPECT_NEAR(end[0].stretch.x(), kGravity * std::sin(0.6) / 1e5, 1e-15);
+  // weight and springs: (m g cos a)^2 / 2 K + (m g sin a)^2 / 2 K, with the same K
+  const Energy energy = world.energy();
+  EXPECT_NEAR(energy.elastic, 0.5 * kGravity * kGravity / 1e5, 1e-15);
+  EXPECT_NEAR(energy.residual(), 0.0, 1e-15);
+  EXPECT_NE(world.network().fingerprint(),
+            make_world(block_on_incline(0.6, {1.0, 0.8, 1e5, 200.0})).network().fingerprint());
+}
+
+/// A world that goes on from where another one is, with the friction of its contacts.
+NetworkDescription going_on(const World& world) {
+  NetworkDescription scene = world.network().description();
+  for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+    scene.mats[i].position = world.position(i);
+    if (scene.mats[i].kind == engine::MatKind::kMass) scene.mats[i].velocity = world.velocity(i);
+  }
+  for (std::size_t s = 0; s < scene.sets.size(); ++s)
+    scene.sets[s].stretches = world.contact_stretches(s);
+  return scene;
+}
+
+TEST(Friction, ClosesTheAccountFromContactsOfTheStart) {
+  std::size_t contacts = 0;
+  for (unsigned seed = 1; seed <= 12; seed += kSeedStride) {
+    World before = make_world(rubbing_cloud(2 + static_cast<int>(seed % 2), seed, seed > 6));
+    run(before, 1500);
+    const NetworkDescription scene = going_on(before);
+    for (const SetLiaison& set : scene.sets) contacts += set.stretches.size();
+    std::vector<std::uint64_t> hashes;
+    for (const VectorWidth width : engine::supported_vector_widths()) {
+      World world = make_world(scene, width);
+      for (int n = 0; n < 1000; ++n) {
+        world.step();
+        const Energy energy = world.energy();
+        ASSERT_NEAR(energy.residual(), 0.0, 1e-12 * energy.largest) << seed << " step " << n;
+      }
+      hashes.push_back(world.state_hash());
+    }
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]) << seed;
+  }
+  EXPECT_GT(contacts, 100u / kSeedStride);
+}
+
+TEST(Friction, RefusesContactsOfTheStartThatAreNone) {
+  using engine::StartStretch;
+  const auto refuses = [](const auto& spoil) {
+    NetworkDescription scene = standing_block(0.3);
+    spoil(scene, scene.sets[0].stretches);
+    EXPECT_THROW(make_world(scene), std::invalid_argument);
+  };
+  EXPECT_NO_THROW(make_world(standing_block(0.3)));
+  refuses([](auto& scene, auto& /*all*/) { scene.state_machines[0].friction = {}; });
+  refuses([](auto& /*scene*/, auto& all) { all[0].member_a = 1; });
+  refuses([](auto& /*scene*/, auto& all) { all[0].member_b = 0; });
+  refuses([](auto& /*scene*/, auto& all) { all[0].member_b = 2; });
+  refuses([](auto& /*scene*/, auto& all) { all[0].stretch.x() = kNan; });
+  refuses([](auto& /*scene*/, auto& all) { all[0].stretch.z() = 1.0; });
+  refuses([](auto& /*scene*/, auto& all) { all.push_back(all[0]); });
+}
+
 TEST(Friction, IsRefusedWhereItDoesNotAct) {
   const NetworkDescription good = block_on_incline(0.1, {0.5, 0.4, 1e4, 1.0});
   const auto refuses = [&](const auto& spoil) {

@@ -123,7 +123,7 @@ TEST(BendPlan, SettlesABeamToItsSag) {
   NetworkDescription scene = beam.network();
   scene.gravity = Vec3(0, -0.05, 0);
 
-  const plan::Settled rest = plan::settle(scene, 1e-9, 2'000'000);
+  const plan::Settled rest = plan::settle(scene, {1e-9, 2'000'000});
 
   const double length = beam.length();
   const double x = length - 0.005;  // of the last MAT

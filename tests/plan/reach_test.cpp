@@ -54,6 +54,16 @@ TEST(Reach, HasWhatLinksOfEachKindStoreAtTheStart) {
   EXPECT_NEAR(reach_of(states).brought - kMotion - kFall, 5.0, 1e-6);
   EXPECT_DOUBLE_EQ(reach_of(states).elongation, 5.0);
 
+  NetworkDescription rubbing = two_masses();
+  rubbing.state_machines.push_back(state_machine(1000.0));
+  rubbing.state_machines[0].friction = {0.5, 0.5, 400.0, 0.0};
+  engine::SetLiaison touching;
+  touching.range = touching.rest_length = 1.0;
+  touching.set_p = {0, 1};
+  touching.stretches = {{0, 1, false, Vec3(0.3, 0.4, 0.0)}};
+  rubbing.sets = {touching};
+  EXPECT_NEAR(reach_of(rubbing).brought - kMotion - kFall, 50.0, 1e-9);
+
   NetworkDescription bend = two_masses();
   bend.mats.push_back(mass(1.0, Vec3(3, 0, 0)));
   engine::Bend corner;  // a right angle that is straight at rest: w^2 = 2

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/world.h"
+#include "tests/engine/rubbing.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::plan {
 namespace {
@@ -42,7 +44,7 @@ TEST(Settle, HangsAChainBelowItsNail) {
   NetworkDescription network = chain(11, false);
   for (engine::Mat& mat : network.mats) mat.position = Vec3(0, -mat.position.x(), 0);
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   ASSERT_LT(rest.force, 1e-9);
   double y = 0.0;
@@ -59,12 +61,12 @@ TEST(Settle, CountsTheStepsOfAllLengths) {
   NetworkDescription network = chain(11, false);
   network.step = 0.1;  // K dt^2 / m is 500: it takes six halvings to below 4
 
-  const Settled whole = settle(network, 1e-9, 200'000);
+  const Settled whole = settle(network, {1e-9, 200'000});
   ASSERT_LT(whole.force, 1e-9);
   for (const std::uint64_t most : {1U, 2U, 50U, 700U, 900U}) {
-    EXPECT_LE(settle(network, 0.0, most).steps, most + 1) << most;
+    EXPECT_LE(settle(network, {0.0, most}).steps, most + 1) << most;
   }
-  const Settled enough = settle(network, 1e-9, whole.steps);
+  const Settled enough = settle(network, {1e-9, whole.steps});
   EXPECT_EQ(enough.steps, whole.steps);
   EXPECT_EQ(enough.position, whole.position);
 }
@@ -83,7 +85,7 @@ TEST(Settle, LeavesOutWhatConditionsAskFor) {
   network.state_machines.push_back(machine);
   network.state_links.push_back({0, 1, 0, kRest});
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
 }
@@ -120,7 +122,7 @@ TEST(Settle, LeavesOutWhatSignalsAskFor) {
   network.groups.push_back({false, engine::LinkKind::kLinear, {1}});
   network.contacts.push_back({1, 2});
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   EXPECT_NEAR(rest.position[1].y(), -kRest - kMass * kG / kStiffness, 1e-10);
 }
@@ -128,7 +130,7 @@ TEST(Settle, LeavesOutWhatSignalsAskFor) {
 TEST(Settle, HangsAChainBetweenTwoNailsAsAnElasticCatenary) {
   const NetworkDescription network = chain(21, true);
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   ASSERT_LT(rest.force, 1e-9);
   // From the first link alone: the horizontal tension is the same in all, the vertical one less by m g
@@ -155,8 +157,8 @@ TEST(Settle, HangsAChainByADrivenForceAsByGravity) {
   pushed.time_functions = {weight};
   for (std::uint32_t i = 1; i < 20; ++i) pushed.drives.push_back({i, 0, true});
 
-  const Settled expected = settle(heavy, 1e-9, 200'000);
-  const Settled rest = settle(pushed, 1e-9, 200'000);
+  const Settled expected = settle(heavy, {1e-9, 200'000});
+  const Settled rest = settle(pushed, {1e-9, 200'000});
 
   ASSERT_LT(rest.force, 1e-9);
   for (std::size_t i = 0; i < 21; ++i) {
@@ -182,7 +184,7 @@ TEST(Settle, LaysABallOnADrivenSurface) {
   set.set_q = {0};
   network.sets = {set};
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   EXPECT_LT(rest.force, 1e-9);
   EXPECT_NEAR(rest.position[0].y(), 0.05 - kMass * kG / kStiffness, 1e-10);
@@ -193,7 +195,7 @@ TEST(Settle, LeavesWhatIsAtRestWhereItIs) {
   NetworkDescription network = chain(5, false);
   network.gravity = Vec3::Zero();
 
-  const Settled rest = settle(network, 1e-9, 10);
+  const Settled rest = settle(network, {1e-9, 10});
 
   EXPECT_EQ(rest.steps, 1u);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(rest.position[i], network.mats[i].position);
@@ -225,7 +227,7 @@ TEST(Settle, IsTheStartOfAWorldThatStaysThere) {
     }
     network.maxwell_links.push_back({0, 5, 10, 3, 0.4});
 
-    const Settled rest = settle(network, 1e-7, 400'000);
+    const Settled rest = settle(network, {1e-7, 400'000});
 
     ASSERT_LT(rest.force, 1e-7);
     for (std::uint32_t i = 0; i < 12; ++i) {
@@ -258,7 +260,7 @@ TEST(Settle, KeepsTheStatesOfTheStart) {
   network.state_machines = {thread};
   network.state_links = {{0, 1, 0, kRest}};
 
-  const Settled rest = settle(network, 1e-9, 100'000);
+  const Settled rest = settle(network, {1e-9, 100'000});
 
   EXPECT_LT(rest.force, 1e-9);
   EXPECT_NEAR(rest.position[1].norm(), kRest + kMass * kG / kStiffness, 1e-11);
@@ -266,11 +268,11 @@ TEST(Settle, KeepsTheStatesOfTheStart) {
 
 TEST(Settle, TakesAShorterStepWhereThatOfImplicitIsTooLong) {
   NetworkDescription network = chain(21, true);
-  const Settled expected = settle(network, 1e-9, 200'000);
+  const Settled expected = settle(network, {1e-9, 200'000});
   network.integrator = engine::IntegratorKind::kImplicit;
   network.step *= 20.0;
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   ASSERT_TRUE(rest.is_finite);
   ASSERT_LT(rest.force, 1e-9);
@@ -280,20 +282,112 @@ TEST(Settle, TakesAShorterStepWhereThatOfImplicitIsTooLong) {
 }
 
 TEST(Settle, EndsWhereRoundingIsAllThatPulls) {
-  const Settled rest = settle(chain(200, true), 1e-13, 2'000'000);
+  const Settled rest = settle(chain(200, true), {1e-13, 2'000'000});
 
   EXPECT_TRUE(rest.is_rounding);
   EXPECT_GT(rest.force, 1e-13);
   EXPECT_LT(rest.force, 1e-10);
   EXPECT_LT(rest.steps, 400'000u);
-  EXPECT_FALSE(settle(chain(200, true), 1e-10, 2'000'000).is_rounding);
+  EXPECT_FALSE(settle(chain(200, true), {1e-10, 2'000'000}).is_rounding);
+}
+
+/// The network from where it has come to rest.
+NetworkDescription started_from(NetworkDescription network, const Settled& rest) {
+  for (std::size_t i = 0; i < network.mats.size(); ++i) network.mats[i].position = rest.position[i];
+  for (std::size_t s = 0; s < network.sets.size(); ++s)
+    network.sets[s].stretches = rest.stretches[s];
+  return network;
+}
+
+TEST(Settle, SetsABlockOnAnInclineThatStaysInItsPlace) {
+  for (const double mu : {0.2, 0.5, 1.0}) {
+    SCOPED_TRACE(mu);
+    const double angle = std::atan(0.98 * mu);
+    const NetworkDescription network =
+        test::block_on_incline(angle, {mu, 0.8 * mu, 1e5, 200.0}, 5e-5);
+
+    const Settled rest = settle(network, {1e-9, 200'000});
+
+    ASSERT_LT(rest.force, 1e-9);
+    ASSERT_EQ(rest.stretches[0].size(), 1u);
+    // K s = m g sin a; what is left is below until / K
+    EXPECT_NEAR(rest.stretches[0][0].stretch.x(), test::kGravity * std::sin(angle) / 1e5, 1e-13);
+    const NetworkDescription start = started_from(network, rest);
+    engine::World world(std::make_shared<const engine::Network>(start));
+    for (int n = 0; n < test::rounds(1'000'000); ++n) world.step();
+    EXPECT_LT((world.position(0) - rest.position[0]).norm(), 1e-9);
+    EXPECT_FALSE(world.contact_stretches(0)[0].slides);
+  }
+}
+
+TEST(Settle, SaysOnWhatSlidesWhatFrictionCannotHold) {
+  for (const double mu : {0.2, 0.5, 1.0}) {
+    const double angle = std::atan(1.02 * mu);
+    const NetworkDescription network = test::block_on_incline(angle, {mu, mu, 1e5, 200.0});
+
+    const Settled rest = settle(network, {1e-9, 20'000});
+
+    const double left = test::kGravity * (std::sin(angle) - mu * std::cos(angle));
+    // the first half step slackens the spring of friction by K dt^2 / 2 m of that
+    EXPECT_NEAR(rest.force, left, 6e-4 * left) << mu;
+    EXPECT_EQ(rest.pulled, 0u);
+    EXPECT_EQ(rest.slides_on, 1u);
+  }
+}
+
+TEST(Settle, LeavesFrictionOutWhereItIsAsked) {
+  const NetworkDescription network = test::block_on_incline(0.1, {0.5, 0.4, 1e5, 200.0});
+
+  const Settled rest = settle(network, {1e-9, 5'000, false});
+
+  EXPECT_NEAR(rest.force, test::kGravity * std::sin(0.1), 1e-6);
+  EXPECT_TRUE(rest.stretches[0].empty());
+  EXPECT_FALSE(rest.slides_on);
+  EXPECT_LT(settle(network, {1e-9, 5'000}).force, 1e-9);
+}
+
+/// Balls with friction that fall onto a floor and each other, into a heap of any shape.
+NetworkDescription falling_balls(int dimension, unsigned seed) {
+  NetworkDescription network = test::rubbing_cloud(dimension, seed);
+  network.step = 1e-4;
+  network.gravity[1] = -kG;
+  for (engine::StateMachine& machine : network.state_machines) {
+    machine.states[0].stiffness *= 50.0;
+    machine.friction.stiffness *= 50.0;
+  }
+  for (engine::Mat& mat : network.mats) mat.velocity = Vec3::Zero();
+  return network;
+}
+
+TEST(Settle, LaysBallsWithFrictionIntoAHeapThatStands) {
+  std::size_t leaning = 0;  // contacts that carry something across
+  for (unsigned seed = 1; seed <= 12; seed += test::kSeedStride) {
+    SCOPED_TRACE(seed);
+    const NetworkDescription network = falling_balls(2 + static_cast<int>(seed % 2), seed);
+
+    const Settled rest = settle(network, {1e-8, 400'000});
+
+    ASSERT_LT(rest.force, 1e-8);
+    const NetworkDescription start = started_from(network, rest);
+    engine::World world(std::make_shared<const engine::Network>(start));
+    for (int n = 0; n < 5'000; ++n) world.step();
+    for (std::uint32_t i = 0; i < network.mats.size(); ++i)
+      ASSERT_LT((world.position(i) - rest.position[i]).norm(), 1e-9) << i;
+    for (const auto& set : rest.stretches) {
+      for (const engine::StartStretch& contact : set) {
+        const double force = 1e4 * contact.stretch.norm();  // K is 50 * 200 N/m
+        leaning += force > 0.01 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(leaning, 10u);
 }
 
 TEST(Settle, EndsWithWhatFallsForever) {
   NetworkDescription network = chain(3, false);
   network.links.pop_back();
 
-  const Settled rest = settle(network, 1e-9, 500);
+  const Settled rest = settle(network, {1e-9, 500});
 
   EXPECT_TRUE(rest.is_finite);
   EXPECT_GE(rest.steps, 500u);

@@ -35,7 +35,8 @@ class SceneWriter {
         random_of_fields_(seed ^ 0xc2b2ae35U),
         random_of_bodies_(seed ^ 0x165667b1U),
         random_of_shells_(seed ^ 0x27d4eb2fU),
-        random_of_parameters_(seed ^ 0x68e31da4U) {
+        random_of_parameters_(seed ^ 0x68e31da4U),
+        random_of_still_matter_(seed ^ 0x9e3779b9U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -62,7 +63,8 @@ class SceneWriter {
     if (space_ > 1) perhaps_add_shell();
     RandomParts added;
     if (matter_ != Matter::kModes) added = random_parts(seed_, space_, laws_of_parts());
-    return head_ + world() + added.parts + "liaisons:\n" + liaisons_ + added.liaisons +
+    if (space_ > 1) perhaps_add_still_matter(added.parts.empty());
+    return head_ + world() + parts_ + added.parts + "liaisons:\n" + liaisons_ + added.liaisons +
            "matter:\n" + masses_ + added.matter + (port_.empty() ? "" : "ports:\n" + port_) +
            "links:\n" + links_ + added.links + R"(signals:
   lively: {quantity: kinetic_energy}
@@ -1080,6 +1082,39 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return surface;
   }
 
+  /// In an eighth of the scenes fixed matter without a liaison, or a part that is fixed, on which the first mass
+  /// hangs.
+  void perhaps_add_still_matter(bool may_be_part) {
+    const auto between = [this](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_of_still_matter_()) / 4294967296.0;
+    };
+    const auto point = [&] {
+      std::string text = "[";
+      for (int axis = 0; axis < space_; ++axis)
+        text += fmt::format("{}{:.5g}", axis > 0 ? ", " : "", between(-0.3, 0.3));
+      return text + "]";
+    };
+    const double choice = between(0.0, 1.0);
+    if (choice > 0.125) return;
+    const bool is_part = may_be_part && choice < 0.06;
+    if (is_part) {
+      parts_ = fmt::format(
+          "parts: {{nail: {{matter: {{x: {{kind: string, count: 3, from_m: {}, to_m: {}, mass_kg: "
+          "0.01, "
+          "stiffness_n_per_m: 30, medium_viscosity_n_s_per_m: 0.1}}}}}}}}\n",
+          point(), point());
+      masses_ += "  still: {part: nail, fixed: true}\n";
+    } else {
+      masses_ +=
+          fmt::format("  still: {{kind: string, count: 3, from_m: {}, to_m: {}, fixed: true}}\n",
+                      point(), point());
+    }
+    liaisons_ += fmt::format("  tie: {{kind: spring_damper, stiffness_n_per_m: {:.4g}}}\n",
+                             std::pow(10.0, between(0.0, 2.0)));
+    links_ += fmt::format("  - {{liaison: tie, between: [\"p[0]\", \"still{}[1]\"]}}\n",
+                          is_part ? ".x" : "");
+  }
+
   void add_surfaces() {
     const std::uint32_t surfaces = 1 + below(3);
     std::string names;
@@ -1113,12 +1148,13 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_media_;      // likewise
   std::mt19937 random_of_bends_;      // likewise
   std::mt19937 random_of_polylines_;  // likewise
-  std::mt19937 random_of_lively_laws_;  // likewise
-  std::mt19937 random_of_crowds_;       // likewise
-  std::mt19937 random_of_fields_;       // likewise
-  std::mt19937 random_of_bodies_;       // likewise
-  std::mt19937 random_of_shells_;       // likewise
-  std::mt19937 random_of_parameters_;   // likewise
+  std::mt19937 random_of_lively_laws_;   // likewise
+  std::mt19937 random_of_crowds_;        // likewise
+  std::mt19937 random_of_fields_;        // likewise
+  std::mt19937 random_of_bodies_;        // likewise
+  std::mt19937 random_of_shells_;        // likewise
+  std::mt19937 random_of_parameters_;    // likewise
+  std::mt19937 random_of_still_matter_;  // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses
@@ -1128,6 +1164,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   bool has_port_ = false;
   std::uint32_t links_with_states_ = 0;  // that have been written; each has a name
   std::string head_;
+  std::string parts_;
   std::string masses_;
   std::string port_;
   std::string liaisons_;

@@ -64,6 +64,93 @@ TEST(FixedMatter, HasThePlacesAndLinksOfThatWhichMoves) {
   }
 }
 
+TEST(FixedMatter, NeedsNoLiaison) {
+  std::size_t changed = 0;
+  for (const FixedMatter& matter : kMatter) {
+    SCOPED_TRACE(matter.keys);
+    std::string keys = matter.keys;
+    const Scene joined = scene_with_bob(matter.space, "  a: {" + keys + ", fixed: true}\n");
+    for (const std::string& stiffness : {", stiffness_n_per_m: 9", "stiffness_n_per_m: 3"}) {
+      const auto place = keys.find(stiffness);
+      if (place != std::string::npos) keys.erase(place, stiffness.size());
+    }
+    const Scene scene = scene_with_bob(matter.space, "  a: {" + keys + ", fixed: true}\n");
+    EXPECT_EQ(scene.network.links.size(), 0u);
+    ASSERT_EQ(scene.network.mats.size(), joined.network.mats.size());
+    for (std::size_t i = 0; i < scene.network.mats.size(); ++i) {
+      EXPECT_EQ(scene.network.mats[i].position, joined.network.mats[i].position);
+      EXPECT_EQ(scene.network.mats[i].kind, joined.network.mats[i].kind);
+    }
+    changed += keys == matter.keys ? 0 : 1;
+    const Scene led =
+        scene_with_bob(matter.space, "  a: {" + keys + ", driven: {displacement_m: [" +
+                                         std::string(matter.space == 1   ? "time_s"
+                                                     : matter.space == 2 ? "time_s, 0"
+                                                                         : "time_s, 0, 0") +
+                                         "]}}\n");
+    EXPECT_EQ(led.network.drives.size(), scene.network.mats.size() - 1);
+  }
+  EXPECT_EQ(changed, 5u);
+}
+
+constexpr const char* kWheel = R"(parts:
+  wheel:
+    matter:
+      hub: {kind: mass, ball: {mass_kg: 2, radius_m: 0.1}, at_m: [0, 0]}
+      rim: {kind: ring, count: 5, mass_kg: 1, center_m: [0, 0], radius_m: 1, stiffness_n_per_m: 9,
+            medium_viscosity_n_s_per_m: 2}
+)";
+
+TEST(FixedMatter, MayBeTheUseOfAPart) {
+  const Scene scene = scene_with_bob(2, R"(  w: {part: wheel, fixed: true, translate_m: [1, 0]}
+  row: {part: wheel, fixed: true, repeat: {count: 2, translate_m: [0, 3]}}
+  moves: {part: wheel, fixed: false, translate_m: [5, 0]}
+  led: {part: wheel, fixed: true, driven: {displacement_m: [0, time_s]}}
+)",
+                                     kWheel);
+  const auto& mats = scene.network.mats;
+  ASSERT_EQ(mats.size(), 5u * 6u + 1u);
+  for (std::size_t i = 0; i < mats.size(); ++i) {
+    const MatKind kind = i < 18   ? MatKind::kFixed
+                         : i < 24 ? MatKind::kMass
+                         : i < 30 ? MatKind::kPort
+                                  : MatKind::kMass;
+    EXPECT_EQ(mats[i].kind, kind) << i;
+    if (kind == MatKind::kFixed) EXPECT_EQ(mats[i].mass, 0.0);
+  }
+  EXPECT_EQ(mats[0].position, engine::Vec3(1, 0, 0));
+  EXPECT_EQ(scene.network.radius[0], 0.1);
+  EXPECT_EQ(scene.network.drives.size(), 6u);
+}
+
+TEST(FixedMatter, OfAPartHasNothingThatMovesIt) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"matter: {x: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: [1, 0]}}",
+       "matter 'w' is fixed, and starts in motion"},
+      {"matter: {x: {kind: mass, mass_kg: 1, at_m: [0, 0], driven: {force_n: [time_s, 0]}}}",
+       "matter 'w' is fixed, and is driven"},
+      {"ports: {x: {device: hand, axes: [0], role: mass, at_m: [0, 0], along: x}}",
+       "matter 'w' is fixed, and has a port, which its device moves"},
+  };
+  for (const auto& [body, message] : cases) {
+    SCOPED_TRACE(body);
+    config::Problems problems;
+    const std::string text = std::string(R"(cordis: 1
+name: t
+space: 2
+step: {rate_hz: 1000}
+matter:
+  bob: {kind: mass, mass_kg: 1, at_m: [9, 9]}
+  w: {part: p, fixed: true}
+parts: {p: {)") + body + "}}\n";
+    load_scene_text(text, "t", problems);
+    EXPECT_EQ(problems.error_count(), 1u) << problems.text();
+    EXPECT_NE(problems.text().find(std::string("t:7:16: error: ") + message + "\n"),
+              std::string::npos)
+        << problems.text();
+  }
+}
+
 TEST(FixedMatter, MayBeDrivenAsAWhole) {
   const Scene scene = scene_with_bob(
       2,

@@ -325,16 +325,15 @@ matter:
   a: {part: p, repeat: {count: ^0}}
 )",
                  "'count' in 'repeat' of matter 'a' must be between 1 and 1000000, got 0", ""},
-        BadScene{
-            kHead1,
-            R"(parts:
+        BadScene{kHead1,
+                 R"(parts:
   p: {matter: {m: {kind: fixed, at_m: 0}}}
 matter:
   a: {part: p, ^rotate_deg: 3}
 )",
-            "unknown key 'rotate_deg' in matter 'a'",
-            "known keys: part, translate_m, layout_translate_m, parameters, repeat, color, driven, "
-            "velocity_m_per_s"},
+                 "unknown key 'rotate_deg' in matter 'a'",
+                 "known keys: part, translate_m, layout_translate_m, parameters, repeat, color, "
+                 "fixed, driven, velocity_m_per_s"},
         BadScene{kHead3,
                  R"(parts:
   p: {matter: {m: {kind: fixed, at_m: [0, 0, 0]}}}

@@ -1,6 +1,11 @@
 // tests/sim/settling_test.cpp -- scenes that are at rest when they start.
 #include "sim_node/checks/settling.h"
 
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "sim_node/engine/world.h"
 #include "tests/sim/loaded_scenes.h"
 #include "tests/support/filled.h"
 
@@ -41,6 +46,67 @@ TEST(Settling, MovesTheStartOfTheScene) {
   EXPECT_NEAR(scene.settled->way, 0.01, 1e-9);
   EXPECT_EQ(settled_text(scene).find("in "), 0u);
   EXPECT_NE(settled_text(scene).find("; chain[4] moved the farthest, 0.01 m"), std::string::npos);
+}
+
+/// A block on a slope, pressed to where it floats.
+std::string block_on_a_slope(double tangent, const std::string& more = "") {
+  const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent);
+  const double depth = 0.02 - 0.1 * 10.0 * cosine / 5000.0;
+  return test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 20000}
+settle: {until_n: 1.0e-10<more>}
+world: {gravity_m_per_s2: [0, -10]}
+matter:
+  slope: {kind: plane, at_m: [0, 0], normal: [<nx>, <ny>]}
+  block: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.02}, at_m: [<x>, <y>]}
+liaisons:
+  rub: {stiffness_n_per_m: 5000, viscosity_n_s_per_m: 10, pulls: false, range: rest,
+        friction: {static: 0.5, kinetic: 0.5, stiffness_n_per_m: 5000, viscosity_n_s_per_m: 40}}
+links: [{liaison: rub, between_sets: [block, slope]}]
+)",
+                      {{"more", more},
+                       {"nx", std::to_string(-tangent * cosine)},
+                       {"ny", std::to_string(cosine)},
+                       {"x", std::to_string(-tangent * cosine * depth)},
+                       {"y", std::to_string(cosine * depth)}});
+}
+
+TEST(Settling, LetsFrictionHoldWhatItCan) {
+  config::Problems problems;
+  const scene::Scene scene = scene_at_rest(block_on_a_slope(0.49), problems);
+
+  ASSERT_EQ(problems.text(), "");
+  ASSERT_EQ(scene.network.sets[0].stretches.size(), 1u);
+  const double along = 0.1 * 10.0 * 0.49 / std::sqrt(1.0 + 0.49 * 0.49);
+  EXPECT_NEAR(scene.network.sets[0].stretches[0].stretch.norm(), along / 5000.0, 1e-9);
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  for (int n = 0; n < 100'000; ++n) world.step();
+  const std::uint32_t block = scene.network.sets[0].set_q[0];
+  EXPECT_LT((world.position(block) - scene.network.mats[block].position).norm(), 1e-9);
+
+  scene::Scene other = scene::load_scene_text(block_on_a_slope(0.49), "t", problems);
+  keep_settled(scene, other);
+  EXPECT_EQ(engine::Network(other.network).fingerprint(),
+            engine::Network(scene.network).fingerprint());
+  other.network.state_machines[0].friction = {};
+  other.network.sets[0].stretches.clear();
+  keep_settled(scene, other);
+  EXPECT_TRUE(other.network.sets[0].stretches.empty());
+}
+
+TEST(Settling, SaysWhatSlides) {
+  config::Problems problems;
+  scene_at_rest(block_on_a_slope(0.51), problems);
+  EXPECT_NE(problems.text().find("the scene has not come to rest in 200001 steps: "),
+            std::string::npos)
+      << problems.text();
+  EXPECT_NE(problems.text().find(" N pull block, which slides on slope\n"), std::string::npos)
+      << problems.text();
+
+  config::Problems smooth;
+  scene_at_rest(block_on_a_slope(0.1, ", friction: false, steps: 500"), smooth);
+  EXPECT_NE(smooth.text().find(" N pull block\n"), std::string::npos) << smooth.text();
 }
 
 TEST(Settling, IsNothingUnlessAsked) {

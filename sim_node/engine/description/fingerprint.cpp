@@ -110,6 +110,13 @@ class Fingerprint {
     add_all(set.set_q);
     add(set.range);
     add(set.rest_length);
+    if (!set.stretches.empty()) add_all(set.stretches);
+  }
+  void add(const StartStretch& contact) {
+    add(contact.member_a);
+    add(contact.member_b);
+    add(static_cast<std::uint64_t>(contact.slides));
+    add(contact.stretch);
   }
   void add(const Surface& surface) {
     add(static_cast<std::uint64_t>(surface.kind));

@@ -182,6 +182,26 @@ void check_surfaces_of(const NetworkDescription& description, const SetLiaison& 
           "at most 2^24");
 }
 
+void check_start_stretches(const NetworkDescription& description, const SetLiaison& set,
+                           const std::string& name) {
+  if (set.stretches.empty()) return;
+  require(rubs(description.state_machines[set.state_machine]), name + ": its start stretches",
+          "left out without friction");
+  const std::size_t count_p = set.set_p.size();
+  const std::size_t first_later = set.set_q.empty() ? 0 : count_p;
+  const std::size_t member_count = count_p + set.set_q.size();
+  const StartStretch* before = nullptr;
+  for (const StartStretch& contact : set.stretches) {
+    const auto [a, b] = std::pair(contact.member_a, contact.member_b);
+    require(a < count_p && a < b && b >= first_later && b < member_count,
+            name + ": each start stretch", "that of a pair");
+    require(before == nullptr || std::pair(before->member_a, before->member_b) < std::pair(a, b),
+            name + ": its start stretches", "in the order of their members");
+    require_vector(contact.stretch, description.dimension, name + ": each start stretch");
+    before = &contact;
+  }
+}
+
 void check_set(const NetworkDescription& description, const SetLiaison& set,
                const std::string& name) {
   check_states(description, set.state_machine, name);
@@ -203,6 +223,7 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
     }
   }
   check_surfaces_of(description, set, name);
+  check_start_stretches(description, set, name);
 }
 
 void check_group(const NetworkDescription& description, const VariableGroup& group,

@@ -102,6 +102,15 @@ struct Bend {
   double length_bc = 0.0;
 };
 
+/// What the friction of a contact remembers at the start: see Friction. Members are numbered from those of P
+/// on, then those of Q.
+struct StartStretch {
+  std::uint32_t member_a = 0;
+  std::uint32_t member_b = 0;  ///< > member_a; of Q where there is one
+  bool slides = false;
+  Vec3 stretch = Vec3::Zero();  ///< the elongation of its spring [m]
+};
+
 /// One liaison between the sets P and Q, or within the set P: between each two of their MATs nearer
 /// than `range`, as its state machine says. Members of a set are alike: the distance of a pair has
 /// no sign in 1 dimension either, and there is no force while it is 0. With states, each pair has
@@ -115,6 +124,8 @@ struct SetLiaison {
   std::vector<std::uint32_t> set_q;  ///< MATs, none of them in P; empty: within P
   double range = 0.0;                ///< distance from which on there is no force [m], > 0
   double rest_length = 0.0;  ///< for each pair [m]; < 0: the sum of the radii of its two MATs
+  /// Contacts with friction that lasts from before the start, by their members; those left out begin then.
+  std::vector<StartStretch> stretches{};
 };
 
 /// All that a Network is assembled from. Forces are summed in a fixed order: links; state links, by

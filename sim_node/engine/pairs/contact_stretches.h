@@ -30,6 +30,8 @@ class ContactStretches {
 
   /// What was written is read from now on, and written again, row by row.
   void begin_step() noexcept;
+  /// Forgets what was written since, and stands as before it.
+  void take_back_step() noexcept;
   /// Contacts of a row in the last step.
   const ContactStretch* old_begin(std::size_t row) const noexcept {
     return read_.contacts.data() + read_.start[row];
@@ -40,22 +42,26 @@ class ContactStretches {
   /// Adds a contact to the row that is being written.
   /// @return false when there is no room: the contact is forgotten.
   [[nodiscard]] bool add(const ContactStretch& contact) noexcept {
-    if (written_.count == written_.contacts.size()) return false;
-    written_.contacts[written_.count++] = contact;
-    sum_of_squares_ += contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
+    if (written_.contacts.size() == capacity()) return false;
+    written_.contacts.push_back(contact);
+    written_.sum_of_squares +=
+        contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
     return true;
   }
   /// Ends a row, and all before it that have not been ended.
   void end_row(std::size_t row) noexcept;
 
-  std::size_t capacity() const noexcept { return written_.contacts.size(); }
+  std::size_t capacity() const noexcept { return capacity_; }
   /// Makes room for more. Allocates; without memory the room stays as it is.
   void make_room(std::size_t capacity) noexcept;
   /// The sum of the squares of what is written, in its order [m^2].
-  double sum_of_squares() const noexcept { return sum_of_squares_; }
+  double sum_of_squares() const noexcept { return written_.sum_of_squares; }
   /// What is written, in its order.
-  std::span<const ContactStretch> written() const noexcept {
-    return {written_.contacts.data(), written_.count};
+  std::span<const ContactStretch> written() const noexcept { return written_.contacts; }
+  /// What is written of a row that has been ended.
+  std::span<const ContactStretch> row(std::size_t row) const noexcept {
+    const std::size_t begin = written_.start[row];
+    return written().subspan(begin, written_.start[row + 1] - begin);
   }
   /// Values that a saved contact takes.
   static constexpr std::size_t kValuesPerPair = 5;
@@ -68,15 +74,15 @@ class ContactStretches {
 
  private:
   struct Table {
-    std::vector<std::size_t> start{0};  // by row; one past the last too
-    std::vector<ContactStretch> contacts;
-    std::size_t count = 0;
+    std::vector<std::size_t> start{0};     // by row; one past the last too
+    std::vector<ContactStretch> contacts;  // reserved: room that nothing uses is not touched
+    double sum_of_squares = 0.0;           // [m^2]
   };
 
   Table read_;
   Table written_;
-  std::size_t ended_ = 0;        // rows
-  double sum_of_squares_ = 0.0;  // [m^2]
+  std::size_t capacity_ = 0;
+  std::size_t ended_ = 0;  // rows
 };
 
 }  // namespace cordis::engine

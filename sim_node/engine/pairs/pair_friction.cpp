@@ -17,9 +17,36 @@ PairFriction::PairFriction(const NetworkDescription& description, const SetLiais
       acts_(rubs(description.state_machines[set.state_machine])),
       unit_vectors_(acts_on_surfaces(description, set)) {
   if (!acts()) return;
+  stretches_ = ContactStretches(row_count_, std::max(capacity, set.stretches.size()));
+  begin_with(set.stretches, description.state_machines[set.state_machine].start);
   adopt(description.state_machines[set.state_machine], /*shows_slid=*/false);
-  stretches_ = ContactStretches(row_count_, capacity);
   values_.resize(kArrayCount * block_capacity_, 0.0);
+}
+
+/// Stands as if a step had been done, with these contacts in the state of the start.
+void PairFriction::begin_with(const std::vector<StartStretch>& contacts, StateIndex start) {
+  stretches_.begin_step();
+  for (const StartStretch& contact : contacts) {
+    if (contact.member_a > 0) stretches_.end_row(contact.member_a - 1);
+    const std::uint32_t mode = 2 * start + (contact.slides ? 1U : 0U);
+    const Vec3& stretch = contact.stretch;
+    const bool kept =
+        stretches_.add({4 * contact.member_b, mode, stretch.x(), stretch.y(), stretch.z()});
+    CORDIS_ASSERT(kept);
+  }
+  stretches_.end_row(row_count_ - 1);
+}
+
+std::vector<StartStretch> PairFriction::contacts() const {
+  std::vector<StartStretch> contacts;
+  if (!acts()) return contacts;
+  for (std::size_t row = 0; row < row_count_; ++row) {
+    for (const ContactStretch& contact : stretches_.row(row)) {
+      contacts.push_back({static_cast<std::uint32_t>(row), contact.column / 4,
+                          contact.mode % 2 != 0, Vec3(contact.x, contact.y, contact.z)});
+    }
+  }
+  return contacts;
 }
 
 void PairFriction::adopt(const StateMachine& state_machine, bool shows_slid) {
@@ -48,8 +75,10 @@ double PairFriction::energy_of_springs() const noexcept {
   return 0.5 * sum;
 }
 
-void PairFriction::begin_step() noexcept {
-  if (!acts()) return;
+void PairFriction::begin_step(bool frozen) noexcept {
+  acts_now_ = acts() && (!frozen || !stretches_.written().empty());
+  is_frozen_ = frozen;
+  if (!acts_now()) return;
   forgotten_ = 0;
   stretches_.begin_step();
 }
@@ -61,7 +90,7 @@ FrictionRows PairFriction::rows() noexcept {
 }
 
 const double* PairFriction::recall(PairBlock& block) noexcept {
-  CORDIS_ASSERT(acts());
+  CORDIS_ASSERT(acts_now());
   for (const Array which : {kStretchX, kStretchY, kStretchZ, kPhase}) {
     std::fill_n(array(which), block.padded_count(), 0.0);
   }
@@ -90,7 +119,7 @@ const double* PairFriction::recall(PairBlock& block) noexcept {
 FrictionRows PairFriction::step(const PairKernel& kernel, const MemberColumns& members,
                                 const StateIndex* states, StateIndex first_state,
                                 PairBlock& block) noexcept {
-  CORDIS_ASSERT(acts());
+  CORDIS_ASSERT(acts_now());
   FrictionTerms terms;
   terms.of_all = terms_.front();
   terms.unit_vectors = unit_vectors_;
@@ -141,6 +170,10 @@ void PairFriction::remember(const StateIndex* states, StateIndex first_state,
 }
 
 double PairFriction::end_step() noexcept {
+  if (is_frozen_) {
+    stretches_.take_back_step();
+    return 0.0;
+  }
   stretches_.end_row(row_count_ - 1);
   const double before = stored_;
   stored_ = energy_of_springs();

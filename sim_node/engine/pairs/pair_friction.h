@@ -32,12 +32,15 @@ class PairFriction {
   /// @param shows_slid  true if conditions ask for Quantity::kSlid
   void adopt(const StateMachine& state_machine, bool shows_slid);
 
-  void begin_step() noexcept;
-  /// Loads what each contact of a padded block remembers, 0 of a new one. Precondition: acts().
+  /// @param frozen  before the start: contacts of the start hold, and nothing is remembered
+  void begin_step(bool frozen) noexcept;
+  /// True if it acts in this step: in a frozen one, if there are contacts of the start.
+  bool acts_now() const noexcept { return acts_now_; }
+  /// Loads what each contact of a padded block remembers, 0 of a new one. Precondition: acts_now().
   /// @return the stretch of each spring as the last step ended [m]; null unless it is asked for
   const double* recall(PairBlock& block) noexcept;
   /// Finds the forces of a block that was recalled, and whose tensions have been found.
-  /// Precondition: acts().
+  /// Precondition: acts_now().
   /// @param states  that of each pair in this step, counted from that of the machine numbered
   ///                `first_state`; null where it has but one
   FrictionRows step(const PairKernel& kernel, const MemberColumns& members,
@@ -51,6 +54,9 @@ class PairFriction {
   std::size_t capacity() const noexcept { return stretches_.capacity(); }
   /// Makes room for so many contacts. Allocates; without memory the room stays as it is.
   void make_room(std::size_t capacity) noexcept { stretches_.make_room(capacity); }
+
+  /// The contacts of the last step, by their members.
+  std::vector<StartStretch> contacts() const;
 
   /// Nothing unless it acts.
   void serialize(Archive& archive, std::size_t first_later, std::size_t member_count);
@@ -72,6 +78,7 @@ class PairFriction {
 
   double* array(std::size_t which) noexcept { return values_.data() + which * block_capacity_; }
   FrictionRows rows() noexcept;
+  void begin_with(const std::vector<StartStretch>& contacts, StateIndex start);
   /// The number of the state of a pair.
   std::size_t state_of(const StateIndex* states, StateIndex first_state,
                        std::size_t pair) const noexcept {
@@ -86,6 +93,8 @@ class PairFriction {
   std::size_t row_count_;
   std::size_t block_capacity_;
   bool acts_;
+  bool acts_now_ = false;
+  bool is_frozen_ = false;
   bool shows_slid_ = false;
   bool is_one_ = true;  // the same friction in all states
   bool unit_vectors_;

@@ -268,7 +268,7 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   clear_forces();
   contacts_.begin_step();
   state_machines_.begin_step(step);
-  if (!step.frozen) friction_.begin_step();
+  friction_.begin_step(step.frozen);
   if (!active_.are_all()) {
     step_active_rows(step);
   } else if (!surfaces_.empty()) {
@@ -282,7 +282,7 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   count_partners();
   StepEnergy energy = give_forces(columns);
   energy.switching += state_machines_.switching();
-  if (!friction_.acts() || step.frozen) return energy;
+  if (!friction_.acts_now()) return energy;
   // The works count all of friction as taken; its springs give some of it back.
   const double stored = friction_.end_step();
   energy.elastic += stored;
@@ -565,14 +565,14 @@ void SetPairs::find_factors(const PairStep& step, const MemberColumns& members, 
 void SetPairs::step_block(const PairStep& step, const MemberColumns& members,
                           PairBlock& block) noexcept {
   const PairRows rows = measure(members, block);
-  const bool rubs = friction_.acts() && !step.frozen;
+  const bool rubs = friction_.acts_now();
   find_factors(step, members, rubs ? friction_.recall(block) : nullptr, block);
   if (rubs) {
     const FrictionRows friction =
         friction_.step(kernel_, members, state_machines_.states_of_block(), first_state_, block);
     kernel_.spread_vectors(rows, block.factor(), friction, force_.data());
     kernel_.spread_vectors(rows, block.viscous_factor(), friction, viscous_.data());
-    contacts_.add(rows, block.factor(), &friction);
+    if (step.sums_contacts) contacts_.add(rows, block.factor(), &friction);
     return;
   }
   if (step.sums_contacts) contacts_.add(rows, block.factor());

@@ -98,6 +98,9 @@ class SetPairs {
 
   void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
 
+  /// The contacts with friction of the last step, by their members. Allocates.
+  std::vector<StartStretch> contact_stretches() const { return friction_.contacts(); }
+
   /// The most since the last forget_partners(). Of what rests, as it came to rest.
   PartnerCount largest_partners() const noexcept { return largest_partners_; }
   void forget_partners() noexcept { largest_partners_ = {}; }

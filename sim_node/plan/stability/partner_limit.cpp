@@ -44,7 +44,7 @@ class Partners {
         contact.neighbours[m] = std::min(contact.possible[m], factor[contact.set] * needed_[c][m]);
       }
     }
-    return row_weights(graph_, step_).number < kLimit;
+    return row_weights(graph_, step_, kLimit).number < kLimit;
   }
 
   /// What a row bound goes through.

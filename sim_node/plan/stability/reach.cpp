@@ -72,6 +72,18 @@ double brought_by_set(const engine::NetworkDescription& network, const engine::S
   return energy + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
 }
 
+/// Stored at the start by the springs of friction [J].
+double stored_by_friction(const engine::NetworkDescription& network,
+                          const engine::SetLiaison& set) {
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const double stiffness = friction_in(state_machine, state_machine.start).stiffness;
+  double energy = 0.0;
+  for (const engine::StartStretch& contact : set.stretches) {
+    energy += 0.5 * stiffness * contact.stretch.squaredNorm();
+  }
+  return energy;
+}
+
 /// Kinetic, stored and what falling through the scene brings, of all but links with states [J].
 double energy_brought(const engine::NetworkDescription& network) {
   double energy = 0.0;
@@ -88,6 +100,7 @@ double energy_brought(const engine::NetworkDescription& network) {
   for (const engine::Bend& bend : network.bends) {
     energy += 0.5 * bend.stiffness * engine::bend_at_start(network, bend).squaredNorm();
   }
+  for (const engine::SetLiaison& set : network.sets) energy += stored_by_friction(network, set);
   if (needs_energy(network)) {
     for (const engine::SetLiaison& set : network.sets) energy += brought_by_set(network, set);
   }

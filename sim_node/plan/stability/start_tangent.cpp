@@ -58,7 +58,9 @@ bool normalise(Direction& direction) {
 /// Makes `present` the best in the space of itself and the two others (Rayleigh, Ritz).
 /// @return the part of it that was not in `present`
 Direction improve(Direction& present, Direction uphill, Direction last) {
-  std::vector<Direction> base{present};
+  std::vector<Direction> base;
+  base.reserve(3);
+  base.push_back(present);
   for (Direction* next : {&uphill, &last}) {
     if (next->value.size() == 0) continue;
     for (int twice = 0; twice < 2; ++twice) {

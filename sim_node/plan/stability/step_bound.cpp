@@ -152,10 +152,10 @@ double limit_step(double stiffness, double viscosity) noexcept {
   return 4.0 / (viscosity + std::sqrt(viscosity * viscosity + 4.0 * stiffness));
 }
 
-RowWeights row_weights(const LiaisonGraph& graph, double step) {
+RowWeights row_weights(const LiaisonGraph& graph, double step, double enough) {
   std::vector<double> x = first_weights(graph);
   RowWeights best{x, std::numeric_limits<double>::infinity()};
-  for (int n = 0; n < kRowBounds; ++n) {
+  for (int n = 0; n < kRowBounds && !(best.number < enough); ++n) {
     const Rows rows = times(graph, x);
     const double number = row_number(graph, x, rows, step);
     if (number < best.number) best = {x, number};

@@ -39,7 +39,8 @@ struct RowWeights {
 };
 
 /// The one of these row bounds that bounds the eigenvalues best at this step. O(liaisons).
-RowWeights row_weights(const LiaisonGraph& graph, double step);
+/// @param enough  the first one whose number is below it is taken
+RowWeights row_weights(const LiaisonGraph& graph, double step, double enough = 0.0);
 
 /// The step at which dt^2 stiffness + 2 dt viscosity = 4, both for unit mass; infinite for 0 and 0.
 double limit_step(double stiffness, double viscosity) noexcept;

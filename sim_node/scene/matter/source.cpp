@@ -68,6 +68,7 @@ std::vector<std::uint32_t> line_of(std::uint32_t count) {
 
 void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
               const std::vector<Edge>& edges) {
+  if (source.is_unjoined) return;
   matter.law = matter.links.count() == 0 ? std::optional(law) : std::nullopt;
   bool possible = true;
   double shortest = kFarthest;
@@ -87,7 +88,11 @@ void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
 }
 
 std::optional<LinkLaw> read_neighbour_law(Source& source) {
-  return read_law(source.reader, LawPlace::kMatter, source.liaisons, source.space);
+  if (!source.needs_no_mass)
+    return read_law(source.reader, LawPlace::kMatter, source.liaisons, source.space);
+  const std::optional<LinkLaw> written = optional_neighbour_law(source);
+  source.is_unjoined = !written && source.reader.ok();
+  return source.is_unjoined ? LinkLaw{} : written;
 }
 
 std::optional<LinkLaw> optional_neighbour_law(Source& source) {
@@ -96,7 +101,7 @@ std::optional<LinkLaw> optional_neighbour_law(Source& source) {
     return key == "liaison" || key == "stiffness_n_per_m" || key == "viscosity_n_s_per_m" ||
            key == "rest_m" || key == "tension_n";
   });
-  if (written) return read_neighbour_law(source);
+  if (written) return read_law(source.reader, LawPlace::kMatter, source.liaisons, source.space);
   for (const char* key :
        {"liaison", "stiffness_n_per_m", "viscosity_n_s_per_m", "rest_m", "tension_n"})
     source.reader.optional_value(key);  // known, for the hints to unknown ones

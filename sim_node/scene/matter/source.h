@@ -23,6 +23,7 @@ struct Source {
   config::Problems& problems;
   const engine::Vec3* driven_start = nullptr;  ///< where a drive puts it when `at_m` is left out
   bool needs_no_mass = false;                  ///< all of it is fixed, or driven
+  bool is_unjoined = false;  ///< it needs no mass, and no law of its links is written
 };
 
 /// `at_m`; without it, where a drive begins.
@@ -62,7 +63,8 @@ std::vector<std::uint32_t> line_of(std::uint32_t count);
 void join_all(Source& source, GeneratedMatter& matter, const LinkLaw& law,
               const std::vector<Edge>& edges);
 
-/// The law of the links between neighbours; nothing after a problem.
+/// The law of the links between neighbours; nothing after a problem. What needs no mass needs no law either:
+/// without one, join_all() does nothing.
 [[nodiscard]] std::optional<LinkLaw> read_neighbour_law(Source& source);
 /// The law of a kind whose MATs need not be joined: nothing, too, when no law is written.
 [[nodiscard]] std::optional<LinkLaw> optional_neighbour_law(Source& source);

@@ -9,6 +9,7 @@
 #include "sim_node/scene/matter/matter.h"
 #include "sim_node/scene/matter/start.h"
 #include "sim_node/scene/sections/driven_part.h"
+#include "sim_node/scene/sections/fixed_part.h"
 #include "sim_node/scene/sections/links.h"
 #include "sim_node/scene/sections/matter.h"
 #include "sim_node/scene/sections/ports.h"
@@ -27,6 +28,8 @@ struct PartUse {
   Placement step;                        ///< from one copy to the next
   std::uint32_t copies = 0;              ///< 0: it is not repeated
   std::optional<config::Colour> colour;  ///< colour of its matter that has none itself
+  bool is_fixed = false;
+  config::Place fixed_place;
   std::optional<DriveSpec> drive;
   config::Place drive_place;
   StartMotion motion;  ///< motion of all of a copy, along the axes of what the part is used in
@@ -54,6 +57,8 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   const Value overrides = reader.optional_mapping("parameters");
   const Value repeat = reader.optional_mapping("repeat");
   use.colour = reader.optional_colour("color");
+  use.is_fixed = reader.optional_truth("fixed", false);
+  use.fixed_place = reader.place_of("fixed");
   use.drive = read_driven(reader, assembly.scene.space(), assembly.problems);
   if (reader.has("driven")) use.drive_place = reader.optional_value("driven").place();
   use.motion = read_motion(reader, assembly.scene.space());
@@ -185,6 +190,11 @@ bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
   }
   // the faults of a part are reported once, however often it is used
   if (use && !sound) assembly.faulty_parts.insert(use->part);
+  if (sound && use->is_fixed) {
+    const std::size_t errors_before = assembly.problems.error_count();
+    fix_part(assembly, first, matter_called(assembly, entry.key), use->fixed_place);
+    sound = assembly.problems.error_count() == errors_before;
+  }
   if (sound && use->drive) {
     const std::size_t errors_before = assembly.problems.error_count();
     drive_part(assembly, *use->drive, first, matter_called(assembly, entry.key), use->drive_place);

@@ -50,6 +50,7 @@ void read_settle(const Value& section, Scene& scene, config::Problems& problems)
   settle.until = reader.required_number("until_n", Range::positive());
   settle.max_steps = static_cast<std::uint64_t>(
       reader.optional_integer("steps", static_cast<long>(settle.max_steps), 1, kMaxSettlingSteps));
+  settle.has_friction = reader.optional_truth("friction", true);
   settle.place = reader.place();
   reader.finish();
   scene.settle = settle;
