@@ -1109,8 +1109,9 @@ step: {{rate_hz: {}, integrator: {}{}}}
           fmt::format("  still: {{kind: string, count: 3, from_m: {}, to_m: {}, fixed: true}}\n",
                       point(), point());
     }
-    liaisons_ += fmt::format("  hanger: {{kind: spring_damper, stiffness_n_per_m: {:.4g}}}\n",
-                             std::pow(10.0, between(0.0, 2.0)));
+    liaisons_ += fmt::format(
+        "  hanger: {{kind: spring_damper, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: 0}}\n",
+        std::pow(10.0, between(0.0, 2.0)));
     links_ += fmt::format("  - {{liaison: hanger, between: [\"p[0]\", \"still{}[1]\"]}}\n",
                           is_part ? ".x" : "");
   }
