@@ -106,7 +106,7 @@ TEST(Settle, TakesLawsOfTheTimeAsTheyAreAtTheStart) {
   network.state_links.push_back({0, 1, 0, kRest});
   EXPECT_FALSE(plan::rest_is_open(network));
 
-  const Settled rest = settle(network, 1e-9, 200'000);
+  const Settled rest = settle(network, {1e-9, 200'000});
 
   EXPECT_NEAR(rest.position[1].y(), -kRest - (kMass * kG - 0.5) / kStiffness, 1e-9);
   network.variables[0].quantity = engine::VariableKind::kPosition;
