@@ -59,11 +59,11 @@ std::optional<std::uint32_t> bend_beside_dampers(const engine::NetworkDescriptio
   return {};
 }
 
-/// The first implicit damper that the energy of the start may turn by more than kMostTurn in a step, at its length
+/// The first implicit damper that the energy of the start may turn by more than kMaxTurn in a step, at its length
 /// of the start or at rest.
 std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& network) {
-  constexpr double kMostTurn = 0.5;  // [rad]
-  constexpr double kHeavy = 1.0;     // Z' from which on its direction matters
+  constexpr double kMaxTurn = 0.2;  // [rad]
+  constexpr double kHeavy = 1.0;    // Z' from which on its direction matters
   if (network.dimension == 1 || !engine::damps_implicitly(network)) return {};
   const Reach reach = reach_of(network);
   for (std::uint32_t index = 0; index < network.links.size(); ++index) {
@@ -75,7 +75,7 @@ std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& net
     if (link.stiffness > 0.0 && link.rest_length > 0.0) length = std::min(length, link.rest_length);
     const double speed =
         std::sqrt(2.0 * here.brought * here.inverse_mass) + (here.held ? here.speed : 0.0);
-    if (speed * network.step > kMostTurn * length) return LiaisonId{LiaisonKind::kLink, index};
+    if (speed * network.step > kMaxTurn * length) return LiaisonId{LiaisonKind::kLink, index};
   }
   return {};
 }
@@ -225,7 +225,7 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         "its viscosity has Z' above 0.3 beside implicit dampers, for which no limit is known"};
   }
   if (const auto damper = damper_that_turns(network)) {
-    return Uncertainty{*damper, "it may gain energy where it turns by more than 0.5 rad in a step"};
+    return Uncertainty{*damper, "it may gain energy where it turns by more than 0.2 rad in a step"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
   const double touch = contact ? contact->stiffness : 0.0;

@@ -10,7 +10,7 @@ namespace cordis::engine {
 namespace {
 
 constexpr double kG = kImplicitDampingShare;
-constexpr double kMostSine = 0.5;   // of the turn of a damper in a step
+constexpr double kMaxSine = 0.5;    // of the turn of a damper in a step
 constexpr double kSlowTurn = 0.01;  // up to which the first k is good enough
 
 /// A network whose M + dt Z + dt^2 K is M + g dt Z of this one.
@@ -75,7 +75,7 @@ double ImplicitDamping::find_turning(const AlignedVector<double>& displacement,
     if (damper.isotropic || damper.length == 0.0) continue;
     const Vec3 apart = column(displacement, damper.b) - column(displacement, damper.a);
     const Vec3 across = apart - dot(damper.axis, apart) * damper.axis;
-    const double sine = std::min(std::sqrt(dot(across, across)) / damper.length, kMostSine);
+    const double sine = std::min(std::sqrt(dot(across, across)) / damper.length, kMaxSine);
     largest = std::max(largest, sine);
     const double k = 2.0 * damper.length * (1.0 - std::sqrt(1.0 - sine * sine));
     const Vec3 force = (damper.viscosity * k) * damper.axis;
