@@ -30,6 +30,9 @@ static_assert(static_cast<int>(engine::Quantity::kAge) == msg::QUANTITY_AGE);
 static_assert(static_cast<int>(engine::Quantity::kRestLength) == msg::QUANTITY_REST_LENGTH);
 static_assert(static_cast<int>(engine::Quantity::kMassA) == msg::QUANTITY_MASS_A);
 static_assert(static_cast<int>(engine::Quantity::kMassB) == msg::QUANTITY_MASS_B);
+static_assert(static_cast<int>(engine::Quantity::kRestAngle) -
+                  static_cast<int>(engine::Quantity::kAngle) ==
+              msg::QUANTITY_REST_ANGLE - msg::QUANTITY_ANGLE);
 static_assert(engine::kNoLink == msg::NO_INDEX);
 static_assert(kLinkIsIdle == msg::LINK_IS_IDLE);
 static_assert(kMaxBonds == msg::MAX_BONDS);
@@ -38,6 +41,10 @@ static_assert(kMaxBonds == msg::MAX_BONDS);
 msg::EventQuantity message_of(engine::Quantity quantity) noexcept {
   if (quantity == engine::Quantity::kSlid) return msg::QUANTITY_SLID;
   if (quantity == engine::Quantity::kNone) return msg::QUANTITY_NONE;
+  if (engine::is_of_angle(quantity)) {
+    const int place = static_cast<int>(quantity) - static_cast<int>(engine::Quantity::kAngle);
+    return static_cast<msg::EventQuantity>(msg::QUANTITY_ANGLE + place);
+  }
   return static_cast<msg::EventQuantity>(quantity);
 }
 

@@ -240,6 +240,16 @@ QuantityWords words_of(msg::EventQuantity quantity) noexcept {
       return {"mass b", "kg"};
     case msg::QUANTITY_SLID:
       return {"slip", "m"};
+    case msg::QUANTITY_ANGLE:
+      return {"angle", "rad"};
+    case msg::QUANTITY_BEND:
+      return {"bend", "rad"};
+    case msg::QUANTITY_ANGULAR_SPEED:
+      return {"speed", "rad/s"};
+    case msg::QUANTITY_MOMENT:
+      return {"moment", "N m"};
+    case msg::QUANTITY_REST_ANGLE:
+      return {"rest", "rad"};
     case msg::QUANTITY_NONE:
       break;
   }

@@ -24,10 +24,13 @@ std::string mat_name(const msg::SceneDescription& scene, std::uint32_t mat) {
   return name_in(scene.matter(), mat, "MAT " + std::to_string(mat));
 }
 
-/// The contract has its quantities in the order of the engine, but for the last.
+/// The contract has its quantities in the order of the engine, but for those added later.
 engine::Quantity quantity_of(msg::EventQuantity quantity) {
   if (quantity == msg::QUANTITY_SLID) return engine::Quantity::kSlid;
   if (quantity == msg::QUANTITY_NONE) return engine::Quantity::kNone;
+  if (quantity >= msg::QUANTITY_ANGLE && quantity <= msg::QUANTITY_REST_ANGLE)
+    return static_cast<engine::Quantity>(static_cast<int>(engine::Quantity::kAngle) +
+                                         (quantity - msg::QUANTITY_ANGLE));
   return static_cast<engine::Quantity>(quantity);
 }
 

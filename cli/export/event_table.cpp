@@ -9,6 +9,9 @@ std::string quantity_word(engine::Quantity quantity) {
   for (const scene::QuantityName& known : scene::kQuantityNames) {
     if (known.quantity == quantity) return known.word;
   }
+  for (const scene::QuantityName& known : scene::kBendQuantityNames) {
+    if (known.quantity == quantity) return known.word;
+  }
   return "";
 }
 

@@ -7,6 +7,7 @@
 
 #include "node/assert.h"
 #include "sim_node/engine/core/float_mode.h"
+#include "sim_node/engine/links/bend_angle.h"
 
 namespace cordis::engine {
 
@@ -51,6 +52,33 @@ double value_of_maxwell_link(const Variable& variable, const World& world) noexc
   const MaxwellLink& link = world.network().description().maxwell_links[variable.index];
   const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
   return variable.quantity == VariableKind::kDistance ? stretch.distance : stretch.elongation_rate;
+}
+
+double value_of_bend(const Variable& variable, const World& world) noexcept {
+  if (variable.quantity == VariableKind::kState) return world.state_of_bend(variable.index);
+  if (variable.quantity == VariableKind::kAge) return world.age_of_bend(variable.index);
+  const NetworkDescription& network = world.network().description();
+  Bend bend = network.bends[variable.index];
+  if (bend.has_states()) {
+    if (variable.quantity == VariableKind::kMoment) return world.moment_of_bend(variable.index);
+    bend.rest_angle = world.rest_angle_of_bend(variable.index);
+  }
+  if (variable.quantity == VariableKind::kRestAngle) return bend.rest_angle;
+  const auto side = [&world](std::uint32_t a, std::uint32_t b) -> Vec3 {
+    return world.position(b) - world.position(a);
+  };
+  const auto rate = [&world](std::uint32_t a, std::uint32_t b) -> Vec3 {
+    return world.velocity(b) - world.velocity(a);
+  };
+  const BendSides sides{side(bend.mat_a, bend.mat_b), side(bend.mat_b, bend.mat_c),
+                        rate(bend.mat_a, bend.mat_b), rate(bend.mat_b, bend.mat_c)};
+  if (variable.quantity == VariableKind::kMoment)
+    return moment_about_middle(bend, network.dimension, sides,
+                               moment_of(bend, network.dimension, sides));
+  const AngleAndRate now = angle_of(bend, network.dimension, sides);
+  if (variable.quantity == VariableKind::kAngle) return now.angle;
+  if (variable.quantity == VariableKind::kAngularSpeed) return now.rate;
+  return angle_beyond(bend.rest_angle, now.angle, network.dimension);
 }
 
 /// Calls (mass, MAT) for each mass of a group.
@@ -140,6 +168,7 @@ double value_of_many(const Variable& variable, const World& world, const Energy&
 }
 
 double value_of_link(const Variable& variable, const World& world) noexcept {
+  if (variable.kind == LinkKind::kBend) return value_of_bend(variable, world);
   if (variable.kind == LinkKind::kState) return value_of_state_link(variable, world);
   if (variable.kind == LinkKind::kMaxwell) return value_of_maxwell_link(variable, world);
   const Link& link = world.network().description().links[variable.index];

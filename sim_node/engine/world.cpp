@@ -120,6 +120,30 @@ void World::force_state(std::uint32_t state_link, std::uint32_t state) noexcept 
   state_->freezing->wake(link.mat_b);
 }
 
+void World::force_state_of_bend(std::uint32_t bend, std::uint32_t state) noexcept {
+  state_->bends.force_state(state_->table, bend, state);
+}
+
+std::uint32_t World::state_of_bend(std::uint32_t bend) const noexcept {
+  CORDIS_ASSERT(bend < network().description().bends.size());
+  return state_->bends.state_of(state_->table, bend);
+}
+
+double World::age_of_bend(std::uint32_t bend) const noexcept {
+  CORDIS_ASSERT(bend < network().description().bends.size());
+  return state_->bends.age(bend, state_->step_count);
+}
+
+double World::rest_angle_of_bend(std::uint32_t bend) const noexcept {
+  CORDIS_ASSERT(bend < network().description().bends.size());
+  return state_->bends.rest_angle(bend);
+}
+
+double World::moment_of_bend(std::uint32_t bend) const noexcept {
+  CORDIS_ASSERT(bend < network().description().bends.size());
+  return state_->bends.last_moment(bend);
+}
+
 void World::replace_state_machine(std::uint32_t index, const StateMachine& state_machine) {
   const FloatMode mode;
   state_->replace_state_machine(index, state_machine);

@@ -61,6 +61,9 @@ class World {
   /// rest length kept. Precondition: the link and the state exist. Real time: O(1).
   void force_state(std::uint32_t state_link, std::uint32_t state) noexcept;
 
+  /// Puts a bend into a state, likewise. Precondition: it has states, and that one. Real time: O(1).
+  void force_state_of_bend(std::uint32_t bend, std::uint32_t state) noexcept;
+
   /// Gives the liaisons of a state machine other parameters between two steps; each link stays in
   /// its state. What their energy changes by counts as switching. If only the new one asks for the
   /// impulse, that counts from here on. Not in real time: allocates.
@@ -103,6 +106,12 @@ class World {
   double age_of(std::uint32_t state_link) const noexcept;
   /// Tension of the link in the last step [N], positive pulls the ends together; 0 before the first.
   double tension_of(std::uint32_t state_link) const noexcept;
+  /// State of a bend, as state_of() of a link. Precondition of this and the next three: it has states.
+  std::uint32_t state_of_bend(std::uint32_t bend) const noexcept;
+  double age_of_bend(std::uint32_t bend) const noexcept;         ///< [s]
+  double rest_angle_of_bend(std::uint32_t bend) const noexcept;  ///< [rad]
+  /// Moment in the last step [N m], positive against a positive bend; 0 before the first.
+  double moment_of_bend(std::uint32_t bend) const noexcept;
   /// How often links of a state machine went from one state to another since step 0, over all of
   /// them.
   std::uint64_t change_count(std::uint32_t state_machine, std::uint32_t from,

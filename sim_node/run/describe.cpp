@@ -38,6 +38,15 @@ std::vector<msg::NamedRange> ranges_of(const std::vector<scene::NamedRange>& ran
   return message;
 }
 
+/// The named links that have two ends.
+std::vector<scene::NamedRange> links_between_two(const scene::Scene& scene) {
+  std::vector<scene::NamedRange> links = scene.links;
+  std::erase_if(links, [count = scene.link_count()](const scene::NamedRange& range) {
+    return range.first >= count;
+  });
+  return links;
+}
+
 msg::PortDescription port_of(const scene::Port& port) {
   msg::PortDescription message;
   message.name(port.name);
@@ -180,7 +189,7 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   description.frame_rate_hz(scene.frame_rate_hz);
   description.scene_file(scene.file);
   description.matter(ranges_of(scene.matter));
-  description.links(ranges_of(scene.links));
+  description.links(ranges_of(links_between_two(scene)));
   report_network(scene, description);
   report_states(scene.network, description);
   const FrameLayout layout = layout_of(scene);

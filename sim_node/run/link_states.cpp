@@ -69,6 +69,14 @@ std::vector<Request::ForcedState> find_states(const scene::Scene& scene, const s
   const std::size_t before = scene.network.links.size();
   std::vector<Request::ForcedState> forced;
   for (std::size_t link = range.first; link <= range.last; ++link) {
+    if (link >= scene.link_count()) {
+      const auto bend = static_cast<std::uint32_t>(link - scene.link_count());
+      if (!scene.network.bends[bend].has_states())
+        throw std::invalid_argument("'" + links + "' has no states");
+      const std::uint32_t machine = scene.network.bends[bend].state_machine;
+      forced.push_back({bend, find_state(scene.network.state_machines[machine], state), true});
+      continue;
+    }
     if (link < before || link - before >= scene.network.state_links.size())
       throw std::invalid_argument("'" + links + "' has no states");
     const auto index = static_cast<std::uint32_t>(link - before);

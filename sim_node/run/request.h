@@ -25,8 +25,9 @@ struct Request {
     kForceStates  ///< put links into states
   };
   struct ForcedState {
-    std::uint32_t state_link;
+    std::uint32_t link;  ///< index of a link with states, or of a bend
     std::uint32_t state;
+    bool is_bend = false;
   };
   Kind kind = Kind::kPause;
   std::uint64_t steps = 0;

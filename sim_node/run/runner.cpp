@@ -34,8 +34,13 @@ void Runner::execute(Request& request) noexcept {
       exchange(request);
       break;
     case Request::Kind::kForceStates:
-      for (const Request::ForcedState& forced : request.forced)
-        simulation().world().force_state(forced.state_link, forced.state);
+      for (const Request::ForcedState& forced : request.forced) {
+        if (forced.is_bend) {
+          simulation().world().force_state_of_bend(forced.link, forced.state);
+        } else {
+          simulation().world().force_state(forced.link, forced.state);
+        }
+      }
       break;
   }
 }

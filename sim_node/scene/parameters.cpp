@@ -54,12 +54,17 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+bool has_states(const engine::NetworkDescription& network, const LinkGroup& group) {
+  if (group.kind != LinkKind::kBend) return group.kind == LinkKind::kState;
+  return group.count > 0 && network.bends[group.first].has_states();
+}
+
 /// The parameters that links of a group may override.
 std::vector<std::string> parameters_of_group(const LinkGroup& group, const Scene& scene) {
   const Liaison* const liaison =
       group.liaison.empty() ? nullptr : scene.liaisons->find(group.liaison);
   if (liaison != nullptr) return parameters_of(liaison->definition);
-  if (group.kind == LinkKind::kState) return {};
+  if (has_states(scene.network, group)) return {};
   return {kStiffness, kViscosity};
 }
 
@@ -107,6 +112,12 @@ void apply(const Change& change, engine::NetworkDescription& network) {
   };
   if (change.kind == Change::Kind::kLinks) put(network.links);
   if (change.kind == Change::Kind::kMaxwellLinks) put(network.maxwell_links);
+  if (change.kind == Change::Kind::kBends) put(network.bends);
+}
+
+Change::Kind change_of(LinkKind kind) {
+  if (kind == LinkKind::kBend) return Change::Kind::kBends;
+  return kind == LinkKind::kLinear ? Change::Kind::kLinks : Change::Kind::kMaxwellLinks;
 }
 
 /// What is changed together: the state machines and the linear or Maxwell links of a name.
@@ -134,8 +145,8 @@ struct Parameters::Target {
         change.state_machine = *state_machine_of(*own);
         scene.liaisons->pool().bind_as(change.first, own->references, change.state_machine);
       } else {
-        change.stiffness = own->stiffness;
-        change.viscosity = own->viscosity;
+        change.stiffness = own->bend ? own->bend->stiffness : own->stiffness;
+        change.viscosity = own->bend ? own->bend->viscosity : own->viscosity;
       }
       outcome.changes.push_back(std::move(change));
       return true;
@@ -147,8 +158,7 @@ struct Parameters::Target {
     }
     for (const LinkGroup* group : groups) {
       Change change;
-      change.kind =
-          group->kind == LinkKind::kLinear ? Change::Kind::kLinks : Change::Kind::kMaxwellLinks;
+      change.kind = change_of(group->kind);
       change.first = group->first;
       change.count = group->count;
       if (!add(group->liaison, group->overrides, group->part, group->name, change)) return outcome;
@@ -179,8 +189,6 @@ Outcome Parameters::set_of_liaison(const std::string& name, const std::string& p
   const std::vector<std::string> words = parameters_of(scene.liaisons->find(name)->definition);
   if (std::find(words.begin(), words.end(), parameter) == words.end())
     return unknown_parameter(name, parameter, words);
-  if (scene.liaisons->find(name)->law.bend)
-    return refused("what resists bending keeps its parameters while a run goes on");
 
   Target target;
   bool used = false;
@@ -190,7 +198,7 @@ Outcome Parameters::set_of_liaison(const std::string& name, const std::string& p
     if (origin.overrides.count(parameter) == 0) target.state_machines.emplace_back(origin, index);
   }
   for (const LinkGroup& group : scene.link_groups) {
-    if (group.liaison != name || group.kind == LinkKind::kState) continue;
+    if (group.liaison != name || has_states(scene.network, group)) continue;
     used = true;
     if (group.overrides.count(parameter) == 0) target.groups.push_back(&group);
   }
@@ -222,6 +230,7 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   std::set<std::uint32_t> state_machines;
   std::vector<Change> plain;  // of links without a liaison
   std::vector<bool> is_own(network.state_links.size(), false);
+  std::vector<bool> is_own_bend(network.bends.size(), false);
   for (const LinkGroup& group : scene.link_groups) {
     if (!is_of(group, name)) continue;
     add_words(words, parameters_of_group(group, scene));
@@ -229,6 +238,11 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
       for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
         state_machines.insert(network.state_links[l].state_machine);
         is_own[l] = true;
+      }
+    } else if (has_states(network, group)) {
+      for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
+        state_machines.insert(network.bends[l].state_machine);
+        is_own_bend[l] = true;
       }
     } else if (!group.liaison.empty()) {
       target.groups.push_back(&group);
@@ -257,6 +271,9 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   for (std::size_t l = 0; l < network.state_links.size(); ++l)
     shared =
         shared || (!is_own[l] && state_machines.count(network.state_links[l].state_machine) != 0);
+  for (std::size_t l = 0; l < network.bends.size(); ++l)
+    shared = shared || (!is_own_bend[l] && network.bends[l].has_states() &&
+                        state_machines.count(network.bends[l].state_machine) != 0);
   for (std::size_t s = 0; s < network.sets.size(); ++s)
     shared = shared || (scene.set_names[s] != name &&
                         state_machines.count(network.sets[s].state_machine) != 0);

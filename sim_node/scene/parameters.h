@@ -19,6 +19,7 @@ struct Change {
     kStateMachine,  ///< for World::replace_state_machine; it has the states it had
     kLinks,         ///< linear links, which a World takes only with a new Network
     kMaxwellLinks,  ///< likewise
+    kBends,         ///< bends without states, likewise
     kWorld          ///< gravity and medium, likewise
   };
   Kind kind = Kind::kStateMachine;

@@ -56,7 +56,8 @@ void set_step(Scene& scene, double rate_hz, engine::IntegratorKind integrator) {
 void number_links(Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   const std::array<std::size_t, kLinkKindCount> first{
-      0, network.links.size(), network.links.size() + network.state_links.size()};
+      0, network.links.size(), network.links.size() + network.state_links.size(),
+      scene.link_count()};
   scene.links.clear();
   for (const LinkGroup& group : scene.link_groups) {
     const std::size_t before = first[static_cast<std::size_t>(group.kind)];

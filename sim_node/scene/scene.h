@@ -184,7 +184,7 @@ struct Scene {
   int space() const noexcept { return network.dimension; }
 
   /// Links of all kinds are numbered in one row: linear ones, then those with states, then Maxwell
-  /// elements.
+  /// elements; bends, which this does not count, come after them.
   std::size_t link_count() const noexcept {
     return network.links.size() + network.state_links.size() + network.maxwell_links.size();
   }

@@ -10,6 +10,7 @@
 #include "sim_node/plan/stability/start_tangent.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "tests/engine/beams.h"
+#include "tests/engine/programs.h"
 #include "tests/plan/networks.h"
 #include "tests/support/rounds.h"
 
@@ -116,6 +117,76 @@ TEST(BendReference, IsWhatTheSchemeConvergesTo) {
     EXPECT_LT(errors[0], 1e-3) << dimension;
     EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.2) << dimension;
   }
+}
+
+/// Masses with bends that yield, thrown apart.
+NetworkDescription random_bends_with_states(unsigned seed, int dimension) {
+  NetworkDescription scene = random_bends(seed, dimension);
+  const Term bend = q(Quantity::kBend);
+  const Term rest = q(Quantity::kRestAngle);  // no exit holds within a step of the reference alone
+  StateMachine yields =
+      Behaving().state(0.02, 1e-5).exit(size(bend) > 0.4, 1).state(0.005).state_machine;
+  if (dimension < 3) {
+    yields = Behaving()
+                 .state(0.02, 1e-5)
+                 .exit_to_rest(size(bend) > 0.4, 1, rest + Term(0.5) * bend)
+                 .state(0.005)
+                 .exit(q(Quantity::kAge) > 0.03, 2, RestRule::kHere)
+                 .state(0.01)
+                 .state_machine;
+  }
+  scene.state_machines = {yields};
+  std::mt19937 random(seed);
+  for (engine::Bend& bend_of : scene.bends) {
+    bend_of.stiffness = bend_of.viscosity = 0.0;
+    bend_of.state_machine = 0;
+  }
+  for (engine::Mat& mat : scene.mats) {
+    if (mat.kind != MatKind::kMass) continue;
+    for (int axis = 0; axis < dimension; ++axis)
+      mat.velocity[axis] = static_cast<double>(random()) / 4294967296.0 - 0.5;
+  }
+  return scene;
+}
+
+TEST(BendBound, OfStatesIsThatOfTheStiffest) {
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    NetworkDescription scene = random_bends_with_states(3, dimension);
+    NetworkDescription stiffest = scene;
+    for (engine::Bend& bend : stiffest.bends) {
+      bend.state_machine = engine::Bend::kNone;
+      bend.stiffness = 0.02;
+      bend.viscosity = 1e-5;
+    }
+    EXPECT_EQ(certified_step(scene), certified_step(stiffest));
+    EXPECT_NEAR(plan::StartTangent(scene).diverging_step(),
+                plan::StartTangent(stiffest).diverging_step(), 1e-12);
+    scene.state_machines[0].states[1].stiffness = 0.05;
+    EXPECT_LT(certified_step(scene), 0.99 * certified_step(stiffest));
+  }
+}
+
+TEST(BendReference, WithStatesIsWhatTheSchemeConvergesTo) {
+  std::uint64_t changes = 0;
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    for (unsigned seed = 1; seed < 7; ++seed) {
+      NetworkDescription scene = random_bends_with_states(seed, dimension);
+      plan::ReferenceIntegrator exact(scene);
+      exact.advance_to(0.2);
+      changes += exact.state_changes();
+      double errors[2] = {};
+      for (const int part : {1, 8}) {
+        scene.step = 2e-5 / part;
+        World world = make_world(scene);
+        run(world, part * 10'000);
+        for (std::uint32_t i = 0; i < scene.mats.size(); ++i)
+          errors[part > 1] += (world.position(i) - exact.position(i)).norm();
+      }
+      EXPECT_LT(errors[0], 5e-3) << dimension << " " << seed;
+      EXPECT_LT(errors[1], 0.3 * errors[0] + 1e-6) << dimension << " " << seed;
+    }
+  }
+  EXPECT_GT(changes, 6U);
 }
 
 TEST(BendPlan, SettlesABeamToItsSag) {

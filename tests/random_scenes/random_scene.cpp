@@ -629,9 +629,40 @@ step: {{rate_hz: {}, integrator: {}{}}}
       law += fmt::format(", viscosity_n_m_s_per_rad: {:.4g}", viscosity);
     const double rest = bend_between(-3.0, 3.0);
     if (space_ < 3 && bend_between(0.0, 1.0) < 0.5) law += fmt::format(", rest_rad: {:.4g}", rest);
+    if (matter_ == Matter::kAnything && bend_between(0.0, 1.0) < 0.6) {
+      law = bend_with_states(stiffness);
+      if (space_ == 1 || bend_between(0.0, 1.0) < 0.3)
+        law += fmt::format(", length_m: {:.4g}", length);
+    }
     liaisons_ += "  of_bends: " + law + "}\n";
     if (count_ > 2 && bend_between(0.0, 1.0) < 0.7) links_ += "  - {liaison: of_bends, along: p}\n";
     links_ += "  - {liaison: of_bends, between: [wall, \"p[0]\", \"p[1]\"]}\n";
+  }
+
+  /// A bend that yields, and snaps or comes back.
+  std::string bend_with_states(double stiffness) {
+    const std::string viscosity =
+        bend_between(0.0, 1.0) < 0.5
+            ? fmt::format(", viscosity_n_m_s_per_rad: {:.4g}", bend_between(1e-6, 1e-3))
+            : "";
+    const std::string own_rest = space_ < 3 && bend_between(0.0, 1.0) < 0.3
+                                     ? fmt::format(", rest_rad: {:.4g}", bend_between(-1.0, 1.0))
+                                     : "";
+    const std::string fold = space_ == 3                    ? ""
+                             : bend_between(0.0, 1.0) < 0.5 ? ", rest: here"
+                                                            : ", rest: rest_rad + 0.5 * bend_rad";
+    const double yield = bend_between(0.02, 1.0);
+    const double softer = stiffness * bend_between(0.05, 1.2);
+    return fmt::format(
+        "{{kind: bending, states: {{"
+        "whole: {{stiffness_n_m_per_rad: {:.4g}{}{}, exits: [{{to: bent, when: abs(bend_rad) > "
+        "{:.4g}{}}}]}}, "
+        "bent: {{stiffness_n_m_per_rad: {:.4g}, exits: ["
+        "{{to: cut, when: abs(angle_rad) > {:.4g} or moment_n_m > {:.4g}}}, "
+        "{{to: whole, when: \"age_s > {:.4g} and falling(speed_rad_per_s)\"}}]}}, "
+        "cut: {{final: true}}}}",
+        stiffness, viscosity, own_rest, yield, fold, softer, yield + bend_between(0.05, 2.0),
+        softer, bend_between(0.001, 0.1));
   }
 
   double lively_between(double low, double high) {

@@ -609,6 +609,12 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
     link.state_machine =
         static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
   }
+  for (engine::Bend& bend : network.bends) {
+    if (!bend.has_states()) continue;
+    alone.push_back(plan::start_state_alone(network.state_machines[bend.state_machine]));
+    bend.state_machine =
+        static_cast<std::uint32_t>(network.state_machines.size() + alone.size() - 1);
+  }
   for (engine::SetLiaison& set : network.sets) {
     alone.push_back(plan::start_state_alone(network.state_machines[set.state_machine]));
     set.state_machine =

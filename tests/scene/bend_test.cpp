@@ -1,10 +1,15 @@
 // tests/scene/bend_test.cpp -- how a scene says that matter resists bending.
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "sim_node/engine/world.h"
+#include "sim_node/scene/parameters.h"
 #include "tests/scene/bad_scene.h"
 #include "tests/support/filled.h"
 
@@ -164,10 +169,63 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
                  "missing key 'stiffness_n_m_per_rad' in liaison 'b'", ""},
         BadScene{kHead2,
-                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, states: ^{}}}
+                 R"(liaisons: {b: {kind: bending, states: ^{}}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-                 "a bending liaison has no states: its law is linear", ""},
+                 "'states' in liaison 'b' must not be empty", ""},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: ^1, states: {whole: {final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "each state of liaison 'b' has its own 'stiffness_n_m_per_rad'",
+            "write it in the states"},
+        BadScene{kHead2,
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, elasticity: ^{}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "a bending liaison has no elasticity: its law is linear in each state", ""},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, states: {whole: {exits: [{to: whole, when: ^elongation_m > 1}]}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "'when' in exit of state 'whole' of liaison 'b' names 'elongation_m', which is no "
+            "quantity and no parameter",
+            "a bend has angle_rad, bend_rad, speed_rad_per_s, moment_n_m, rest_rad, age_s"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, states: {whole: {exits: [{to: whole, when: ^angel_rad > 1}]}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "'when' in exit of state 'whole' of liaison 'b' names 'angel_rad', which is no "
+            "quantity and no parameter",
+            "did you mean 'angle_rad'?"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, states: {whole: {^stiffness_n_per_m: 1, final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "unknown key 'stiffness_n_per_m' in state 'whole' of liaison 'b'",
+            "did you mean 'stiffness_n_m_per_rad'?"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, states: {whole: {final: true}, ^cut: {final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "state 'cut' of liaison 'b' cannot be reached from its start, 'whole'", ""},
+        BadScene{kHead2,
+                 R"(liaisons: {b: {kind: bending, states: {whole: {rest_rad: ^9, final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "'rest_rad' in state 'whole' of liaison 'b' must be between -3.2 and 3.2, got 9",
+                 ""},
+        BadScene{
+            kHead3,
+            R"(liaisons: {b: {kind: bending, states: {whole: {exits: [{to: whole, when: angle_rad > 1, rest: ^here}]}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}}
+)",
+            "in 3 dimensions a bend has no sign, so its rest stays straight", "leave 'rest' out"},
         BadScene{kHead3,
                  R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: ^1}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}}
@@ -205,8 +263,6 @@ TEST(Bends, SayWhatIsWrongWithALink) {
                "'a[2]' and 'a[3]' start at the same point, so the length between them is not "
                "known"},
            Bad{"{liaison: steel, along: \"a[0..2]\", rest_m: 1}", "a bending has no 'rest_m'"},
-           Bad{"{liaison: steel, along: \"a[0..2]\", name: x}",
-               "a bending liaison takes no 'name', for it has no signals and commands"},
            Bad{"{liaison: steel, along: \"a[0..2]\", between: [one, \"a[0]\", \"a[1]\"]}",
                "either 'along' or 'between' can be given in link"},
            Bad{"{liaison: steel, between: [\"a[0]\", \"a[1]\"]}",
@@ -248,6 +304,144 @@ links:
                     "t", problems);
     EXPECT_EQ(problems.all().size(), 1u) << problems.text();
   }
+}
+
+TEST(Bends, HaveOneProblemForARestInSpaceThatIsTooLarge) {
+  for (const char* const rest : {"9", "1"}) {
+    config::Problems problems;
+    load_scene_text(test::filled(R"(cordis: 1
+space: 3
+step: {rate_hz: 20000}
+liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, rest_rad: <rest>}}
+matter: {q: {kind: points, at_m: [[0, 0, 0], [1, 0, 0], [2, 0, 0]], mass_kg: 1}}
+links: [{liaison: b, along: q}, {liaison: b, along: q}]
+)",
+                                 {{"rest", std::string(rest)}}),
+                    "t", problems);
+    EXPECT_EQ(problems.all().size(), 1u) << problems.text();
+  }
+}
+
+constexpr const char* kBranch = R"(liaisons:
+  wood:
+    kind: bending
+    parameters: {b_n_m: 2, yield_rad: 0.3}
+    states:
+      whole: {stiffness_n_m_per_rad: b_n_m, viscosity_n_m_s_per_rad: 0.01, rest_rad: 0.1,
+              exits: [{to: broken, when: abs(bend_rad) > yield_rad},
+                      {to: bent, when: "rod.links[0].force_n > 1000 and time_s > 1", rest: here},
+                      {to: bent, when: moment_n_m > 5 or speed_rad_per_s > 1e3, rest: rest_rad + 0.5 * bend_rad}]}
+      bent: {stiffness_n_m_per_rad: 1, exits: [{to: whole, when: "falling(angle_rad) and age_s > 1", rest: keep}]}
+      broken: {final: true}
+  steel: {kind: bending, stiffness_n_m_per_rad: 0.5}
+  watched: {states: {on: {exits: [{to: off, when: "twig.angle_rad > 0.2 or twig.state == broken"}]}, off: {final: true}}}
+matter:
+  rod: {kind: string, count: 5, mass_kg: 0.1, from_m: [0, 0], to_m: [0.4, 0], stiffness_n_per_m: 100}
+links:
+  - {liaison: wood, between: ["rod[0]", "rod[1]", "rod[2]"], name: twig}
+  - {liaison: wood, along: rod, b_n_m: 3, name: limb}
+  - {liaison: steel, along: "rod[0..2]", name: reed}
+  - {liaison: steel, along: "rod[1..4]"}
+  - {liaison: watched, between: ["rod[0]", "rod[4]"]}
+)";
+
+TEST(BendsWithStates, AreReadWithTheirNames) {
+  const Scene scene = sound_scene(2, kBranch);
+  const engine::NetworkDescription& network = scene.network;
+
+  ASSERT_EQ(network.bends.size(), 1u + 3u + 1u + 2u);
+  EXPECT_TRUE(network.bends[0].has_states());
+  EXPECT_FALSE(network.bends[4].has_states());
+  EXPECT_EQ(network.bends[0].rest_angle, 0.1);
+  const engine::StateMachine& twig = network.state_machines[network.bends[0].state_machine];
+  const engine::StateMachine& limb = network.state_machines[network.bends[1].state_machine];
+  EXPECT_EQ(twig.name, "wood");
+  EXPECT_EQ(twig.states[0].stiffness, 2.0);
+  EXPECT_EQ(limb.states[0].stiffness, 3.0);
+  EXPECT_EQ(twig.states[0].rest_angle, 0.1);
+  EXPECT_EQ(twig.states[2].name, "broken");
+  EXPECT_EQ(twig.exits[0].triggered, engine::Quantity::kBend);
+  EXPECT_EQ(twig.exits[1].rest, engine::RestRule::kHere);
+  ASSERT_EQ(scene.link_groups.size(), 6u);
+  ASSERT_EQ(scene.links.size(), 6u);
+  EXPECT_EQ(scene.links[2].name, "twig");
+  EXPECT_EQ(scene.links[2].first, scene.link_count());
+  EXPECT_EQ(scene.links[5].name, "steel");
+  engine::World world(std::make_shared<const engine::Network>(network));
+  world.step();
+}
+
+TEST(BendsWithStates, HaveSignals) {
+  const Scene scene = sound_scene(2, std::string(kBranch) + R"(signals:
+  a: {of: twig, quantity: angle}
+  b: {of: limb, quantity: moment, take: largest}
+  c: {of: limb, quantity: state, take: sum}
+  d: {of: "limb[2]", quantity: age}
+  e: {of: reed, quantity: bend}
+  f: {of: steel, quantity: speed, take: mean}
+  g: {of: reed, quantity: rest_angle}
+)");
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  for (int n = 0; n < 3; ++n) world.step();
+  std::vector<double> values(scene.signals.count());
+  scene.signals.read(world, values.data());
+  const auto value = [&](std::size_t index) { return values[index]; };
+  const auto side = [&](std::uint32_t a, std::uint32_t b) -> engine::Vec3 {
+    return world.position(b) - world.position(a);
+  };
+  const auto angle_of = [&](const engine::Bend& bend) {
+    const engine::Vec3 u = side(bend.mat_a, bend.mat_b);
+    const engine::Vec3 v = side(bend.mat_b, bend.mat_c);
+    return std::atan2(u.x() * v.y() - u.y() * v.x(), u.dot(v));
+  };
+  EXPECT_GT(std::abs(value(0)), 1e-4);
+  EXPECT_NEAR(value(0), angle_of(scene.network.bends[0]), 1e-14);
+  EXPECT_EQ(value(1),
+            std::max({world.moment_of_bend(1), world.moment_of_bend(2), world.moment_of_bend(3)}));
+  EXPECT_EQ(value(2), 0.0);
+  EXPECT_NEAR(value(3), 3.0 * scene.network.step, 1e-15);
+  EXPECT_NEAR(value(4), angle_of(scene.network.bends[4]), 1e-14);
+  EXPECT_NE(value(5), 0.0);
+  EXPECT_EQ(value(6), 0.0);
+}
+
+TEST(BendsWithStates, ShareQuantitiesWithNoLink) {
+  for (const auto& [signal, message] :
+       {std::pair{"{of: reed, quantity: force}", "a bend has no quantity 'force'"},
+        std::pair{"{of: reed, quantity: state}", "a bend has no quantity 'state'"},
+        std::pair{"{of: twig, quantity: bonds}", "a bend with states has no quantity 'bonds'"},
+        std::pair{"{of: [twig, reed], quantity: state, take: sum}",
+                  "a bend has no quantity 'state'"},
+        std::pair{"{of: rod.links, quantity: angle, take: sum}",
+                  "a link has no quantity 'angle'"}}) {
+    config::Problems problems;
+    load_scene_text(scene_head(2) + kBranch + "signals:\n  a: " + signal + "\n", "t", problems);
+    ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+    EXPECT_EQ(problems.all()[0].message, message);
+  }
+}
+
+TEST(BendsWithStates, TakeParametersDuringARun) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(2, kBranch));
+  Parameters parameters(scene);
+  const Parameters::Outcome of_limb = parameters.set("limb", "b_n_m", 7.0);
+  ASSERT_EQ(of_limb.problem, "");
+  ASSERT_EQ(of_limb.changes.size(), 1u);
+  EXPECT_EQ(of_limb.changes[0].state_machine.states[0].stiffness, 7.0);
+  const Parameters::Outcome of_steel = parameters.set("steel", "stiffness_n_m_per_rad", 4.0);
+  ASSERT_EQ(of_steel.problem, "");
+  engine::NetworkDescription network = scene->network;
+  for (const Change& change : of_steel.changes) apply(change, network);
+  EXPECT_EQ(network.bends[4].stiffness, 4.0);
+  EXPECT_EQ(network.bends[5].stiffness, 4.0);
+  EXPECT_EQ(network.bends[0].stiffness, 0.0);
+  const Parameters::Outcome of_reed = parameters.set("reed", "stiffness_n_m_per_rad", 5.0);
+  ASSERT_EQ(of_reed.problem, "");
+  ASSERT_EQ(of_reed.changes.size(), 1u);
+  EXPECT_EQ(of_reed.changes[0].count, 1u);
+  ASSERT_EQ(parameters.get("reed.stiffness_n_m_per_rad").entries.size(), 1u);
+  EXPECT_EQ(parameters.set("twig", "stiffness_n_m_per_rad", 1.0).problem,
+            "'twig' has no parameter 'stiffness_n_m_per_rad'");
 }
 
 TEST(Bends, NameThemselvesInARefusal) {

@@ -170,13 +170,13 @@ TEST(LinkStates, AreFoundByTheNamesOfLinksAndStates) {
   const auto scene = breaking_scene(6);
   const auto all = find_states(*scene, "fuse", "broken");
   ASSERT_EQ(all.size(), 6u);
-  EXPECT_EQ(all[5].state_link, 5u);
+  EXPECT_EQ(all[5].link, 5u);
   EXPECT_EQ(all[5].state, 1u);
   const auto some = find_states(*scene, "fuse[2..4]", "whole");
   ASSERT_EQ(some.size(), 3u);
-  EXPECT_EQ(some[0].state_link, 2u);
+  EXPECT_EQ(some[0].link, 2u);
   EXPECT_EQ(some[0].state, 0u);
-  EXPECT_EQ(find_states(*scene, "fuse[3]", "broken").at(0).state_link, 3u);
+  EXPECT_EQ(find_states(*scene, "fuse[3]", "broken").at(0).link, 3u);
 }
 
 TEST(LinkStates, TheRefusalOfAnIndexCountsOneLinkInTheSingular) {

@@ -65,6 +65,7 @@ class Fingerprint {
     add(state.first_exit);
     add(state.last_exit);
     if (state.friction) add(*state.friction);
+    if (state.rest_angle) add(*state.rest_angle);
   }
   void add(const Friction& friction) {
     for (const double value : {friction.static_coefficient, friction.kinetic_coefficient,
@@ -103,6 +104,7 @@ class Fingerprint {
          {bend.stiffness, bend.viscosity, bend.rest_angle, bend.length_ab, bend.length_bc}) {
       add(value);
     }
+    if (bend.has_states()) add(bend.state_machine);
   }
   void add(const SetLiaison& set) {
     add(set.state_machine);

@@ -102,6 +102,28 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
   require(std::isfinite(link.start_force), name + ": start force", "finite");
 }
 
+void check_bend_states(const NetworkDescription& description, const Bend& bend,
+                       const std::string& name) {
+  require(bend.state_machine < description.state_machines.size(), name + ": state machine",
+          "one of the network");
+  require(bend.stiffness == 0.0 && bend.viscosity == 0.0, name + ": stiffness and viscosity",
+          "those of its states");
+  const StateMachine& state_machine = description.state_machines[bend.state_machine];
+  require(refused_in_bends(state_machine) == nullptr, name + ": its states",
+          "linear, with conditions on an angle");
+  const Bend stiffest = description.stiffest_of(bend);
+  for (const double length : {bend.length_ab, bend.length_bc}) {
+    require(std::isfinite(stiffest.stiffness / length / length) &&
+                std::isfinite(stiffest.viscosity / description.step / length / length),
+            name + ": stiffness and viscosity", "small enough for its rest lengths and the step");
+  }
+  if (description.dimension < 3) return;
+  for (const LinkState& state : state_machine.states)
+    require(state.rest_angle.value_or(0.0) == 0.0, name + ": rest angle", "0 in 3 dimensions");
+  for (const Transition& exit : state_machine.exits)
+    require(exit.rest == RestRule::kKeep, name + ": rest angle", "kept in 3 dimensions");
+}
+
 void check_bend(const NetworkDescription& description, const Bend& bend, const std::string& name) {
   for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) {
     require(mat < description.mats.size(), name + ": each MAT", "one of the network");
@@ -117,6 +139,7 @@ void check_bend(const NetworkDescription& description, const Bend& bend, const s
             name + ": stiffness and viscosity", "small enough for its rest lengths and the step");
   }
   require(std::abs(bend.rest_angle) < kMaxRestAngle, name + ": rest angle", "within 3.2 rad of 0");
+  if (bend.has_states()) check_bend_states(description, bend, name);
   require(description.dimension < 3 || bend.rest_angle == 0.0, name + ": rest angle",
           "0 in 3 dimensions, where a bend has no sign");
 }
@@ -226,13 +249,25 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   check_start_stretches(description, set, name);
 }
 
+std::size_t count_of(const NetworkDescription& description, LinkKind kind) {
+  switch (kind) {
+    case LinkKind::kLinear:
+      return description.links.size();
+    case LinkKind::kState:
+      return description.state_links.size();
+    case LinkKind::kMaxwell:
+      return description.maxwell_links.size();
+    case LinkKind::kBend:
+      break;
+  }
+  return description.bends.size();
+}
+
 void check_group(const NetworkDescription& description, const VariableGroup& group,
                  const std::string& name) {
   std::size_t count = description.mats.size();
   if (group.is_of_links) {
-    count = group.kind == LinkKind::kLinear  ? description.links.size()
-            : group.kind == LinkKind::kState ? description.state_links.size()
-                                             : description.maxwell_links.size();
+    count = count_of(description, group.kind);
   }
   require(!group.members.empty(), name, "one of at least 1 member");
   std::vector<bool> taken(count, false);
@@ -271,15 +306,35 @@ void check_group_of(const NetworkDescription& description, const Variable& varia
           name + ": its group", "one with a mass");
 }
 
+void check_link_of(const NetworkDescription& description, const Variable& variable,
+                   const std::string& name) {
+  const bool is_of_bend = variable.kind == LinkKind::kBend;
+  const bool asks_for_state =
+      variable.quantity == VariableKind::kState || variable.quantity == VariableKind::kAge;
+  if (is_of_angle(variable.quantity)) require(is_of_bend, name + ": its link", "a bend");
+  if (is_of_bend && asks_for_state) {
+    const auto has_states = [&](std::uint32_t bend) {
+      return description.bends[bend].has_states();
+    };
+    const bool all_have =
+        is_of_group(variable)
+            ? std::ranges::all_of(description.groups[variable.index].members, has_states)
+            : has_states(variable.index);
+    require(all_have, name + ": its bend", "one with states");
+  } else if (is_of_bend) {
+    require(is_of_angle(variable.quantity), name + ": its link", "one between two MATs");
+  } else if (variable.quantity >= VariableKind::kState && !is_of_angle(variable.quantity)) {
+    require(variable.kind == LinkKind::kState, name + ": its link", "one with states");
+  }
+}
+
 void check_variable(const NetworkDescription& description, const Variable& variable,
                     const std::string& name) {
   const auto list_size = [&] {
     if (is_of_group(variable)) return description.groups.size();
     if (variable.quantity == VariableKind::kContactForce) return description.contacts.size();
     if (is_of_mat(variable.quantity)) return description.mats.size();
-    if (variable.kind == LinkKind::kLinear) return description.links.size();
-    return variable.kind == LinkKind::kState ? description.state_links.size()
-                                             : description.maxwell_links.size();
+    return count_of(description, variable.kind);
   };
   require(!is_count(variable.quantity), name + ": quantity", "no count of pieces or bonds");
   const bool is_of_something = is_of_mat(variable.quantity) || is_of_link(variable.quantity) ||
@@ -289,9 +344,7 @@ void check_variable(const NetworkDescription& description, const Variable& varia
     require(variable.index < list_size(), name + ": what it is of", "in the network");
   }
   if (is_of_group(variable)) check_group_of(description, variable, name);
-  if (is_of_link(variable.quantity) && variable.quantity >= VariableKind::kState) {
-    require(variable.kind == LinkKind::kState, name + ": its link", "one with states");
-  }
+  if (is_of_link(variable.quantity)) check_link_of(description, variable, name);
   require(variable.direction.allFinite(), name + ": direction", "finite");
   require(std::isfinite(variable.offset), name + ": offset", "finite");
   require(variable.point.allFinite(), name + ": point", "finite");
@@ -370,6 +423,25 @@ bool NetworkDescription::has_medium() const noexcept {
 
 std::size_t NetworkDescription::mass_count() const noexcept {
   return static_cast<std::size_t>(std::ranges::count(mats, MatKind::kMass, &Mat::kind));
+}
+
+Bend NetworkDescription::stiffest_of(const Bend& bend) const noexcept {
+  Bend stiffest = bend;
+  if (!bend.has_states()) return stiffest;
+  for (const LinkState& state : state_machines[bend.state_machine].states) {
+    stiffest.stiffness = std::max(stiffest.stiffness, state.stiffness);
+    stiffest.viscosity = std::max(stiffest.viscosity, state.viscosity);
+  }
+  return stiffest;
+}
+
+Bend NetworkDescription::at_start(const Bend& bend) const noexcept {
+  if (!bend.has_states()) return bend;
+  const StateMachine& state_machine = state_machines[bend.state_machine];
+  Bend started = bend;
+  started.stiffness = state_machine.states[state_machine.start].stiffness;
+  started.viscosity = state_machine.states[state_machine.start].viscosity;
+  return started;
 }
 
 Network::Network(NetworkDescription description) : description_(std::move(description)) {

@@ -91,15 +91,21 @@ struct MaxwellLink {
 ///
 /// In 1 dimension a MAT moves across the line on which it stands, and the angle is a difference of slopes:
 /// w = v / length_bc - u / length_ab - rest. In 3 dimensions a bend has no sign, and its rest is straight.
+///
+/// A bend with states takes B and Z from the state it is in; its conditions ask for the quantities of an angle.
 struct Bend {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
   std::uint32_t mat_c = 0;
-  double stiffness = 0.0;   ///< B [N m/rad], >= 0
-  double viscosity = 0.0;   ///< Z [N m s/rad], >= 0
-  double rest_angle = 0.0;  ///< [rad], counter-clockwise from u to v; 0 in 3 dimensions
+  double stiffness = 0.0;   ///< B [N m/rad], >= 0; 0 with states
+  double viscosity = 0.0;   ///< Z [N m s/rad], >= 0; 0 with states
+  double rest_angle = 0.0;  ///< at step 0 [rad], counter-clockwise from u to v; 0 in 3 dimensions
   double length_ab = 0.0;   ///< rest length of the sides [m], > 0
   double length_bc = 0.0;
+  std::uint32_t state_machine = kNone;  ///< index in NetworkDescription::state_machines, or kNone
+
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  bool has_states() const noexcept { return state_machine != kNone; }
 };
 
 /// What the friction of a contact remembers at the start: see Friction. Members are numbered from those of P
@@ -164,6 +170,10 @@ struct NetworkDescription {
   }
   bool has_medium() const noexcept;         ///< it takes something from a mass. O(MATs)
   std::size_t mass_count() const noexcept;  ///< MATs of kind kMass. O(MATs)
+  /// The bend with the largest stiffness and the largest viscosity of its states. O(states)
+  Bend stiffest_of(const Bend& bend) const noexcept;
+  /// The bend in the state of the start.
+  Bend at_start(const Bend& bend) const noexcept;
 };
 
 /// A network of MATs (its nodes) and LIAs (its arcs), checked and laid out for stepping; immutable.

@@ -7,6 +7,7 @@
 
 #include "node/assert.h"
 #include "sim_node/engine/core/require.h"
+#include "sim_node/engine/description/bend_limits.h"
 
 namespace cordis::engine {
 namespace {
@@ -62,6 +63,8 @@ void check_state(const StateMachine& state_machine, const LinkState& state, cons
   check_elasticity(state.elasticity, name + ": elasticity", variable_count);
   check_dissipation(state.dissipation, name + ": dissipation", variable_count);
   if (state.friction) check_friction(*state.friction, name + ": friction");
+  require(!state.rest_angle || std::abs(*state.rest_angle) < kMaxRestAngle, name + ": rest angle",
+          "within 3.2 rad of 0");
   require(state.first_exit <= state.last_exit && state.last_exit <= state_machine.exits.size(),
           name + ": exits", "a range of the exits of the state machine");
   std::vector<bool> used(kMaxSlots, false);
@@ -80,6 +83,37 @@ const Friction& friction_in(const StateMachine& state_machine, std::size_t state
   CORDIS_ASSERT(state < state_machine.states.size());
   const std::optional<Friction>& own = state_machine.states[state].friction;
   return own ? *own : state_machine.friction;
+}
+
+const char* refused_in_bends(const StateMachine& state_machine) noexcept {
+  if (rubs(state_machine)) return "friction";
+  for (const LinkState& state : state_machine.states) {
+    if (!is_none(state.elasticity)) return "elasticity";
+    if (!is_none(state.dissipation)) return "dissipation";
+    if (!state.pulls || !state.pushes) return "pulls and pushes";
+    if (!std::isinf(state.force_limit)) return "a force limit";
+  }
+  const auto asks_for_link = [](const Program& program) {
+    return std::ranges::any_of(program.code, [](const Instruction& instruction) {
+      return instruction.operation == Operation::kQuantity && !is_of_angle(instruction.quantity) &&
+             instruction.quantity != Quantity::kAge;
+    });
+  };
+  const bool asks = std::ranges::any_of(state_machine.exits, [&](const Transition& exit) {
+    return asks_for_link(exit.when) || asks_for_link(exit.rest_length);
+  });
+  return asks ? "quantities of a link between two MATs" : nullptr;
+}
+
+bool asks_for_angle(const StateMachine& state_machine) noexcept {
+  const auto asks = [](const Program& program) {
+    return std::ranges::any_of(program.code, [](const Instruction& instruction) {
+      return instruction.operation == Operation::kQuantity && is_of_angle(instruction.quantity);
+    });
+  };
+  return std::ranges::any_of(state_machine.exits, [&](const Transition& exit) {
+    return asks(exit.when) || asks(exit.rest_length);
+  });
 }
 
 bool rubs(const StateMachine& state_machine) noexcept {

@@ -51,6 +51,8 @@ struct LinkState {
   bool pushes = true;      ///< false: a thread
   double force_limit = std::numeric_limits<double>::infinity();  ///< [N], > 0
   std::optional<Friction> friction{};  ///< its own; without one that of the state machine
+  /// Rest angle that a bend takes as it enters the state, unless the exit has a rule [rad].
+  std::optional<double> rest_angle{};
   std::uint32_t first_exit = 0;  ///< its exits are State machine::exits[first_exit, last_exit)
   std::uint32_t last_exit = 0;
 };
@@ -89,6 +91,11 @@ struct StateMachine {
 
 /// The friction in a state. Precondition: the state exists.
 const Friction& friction_in(const StateMachine& state_machine, std::size_t state) noexcept;
+
+/// What a bend cannot have in a state: `elasticity` and so on; nullptr when it takes all of it.
+const char* refused_in_bends(const StateMachine& state_machine) noexcept;
+/// True if a program of it asks for a quantity of an angle.
+bool asks_for_angle(const StateMachine& state_machine) noexcept;
 
 /// True if there is friction in any of its states.
 bool rubs(const StateMachine& state_machine) noexcept;

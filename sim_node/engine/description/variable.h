@@ -8,8 +8,8 @@
 
 namespace cordis::engine {
 
-/// The kinds of links between two MATs.
-enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell };
+/// The kinds of links: three between two MATs, and those of three MATs that resist bending.
+enum class LinkKind : std::uint8_t { kLinear, kState, kMaxwell, kBend };
 
 /// What a variable measures. The first block is of a MAT, the second of a link, the third of a set, the
 /// next two of the scene, the last of a group of MATs.
@@ -48,8 +48,14 @@ enum class VariableKind : std::uint8_t {
   kMomentum,         ///< momentum of a group along a direction [kg m/s]
   kAngularMomentum,  ///< angular momentum of a group about an axis through its centre of mass, or
                      ///< a point [kg m^2/s]
-  kContactForce  ///< on a group by another one along a direction: of their liaisons of sets, in the last
-                 ///< step [N]
+  kContactForce,  ///< on a group by another one along a direction: of their liaisons of sets, in the last
+                  ///< step [N]
+
+  kAngle,         ///< angle of a bend, which has a state and an age as links do [rad]
+  kBendAngle,     ///< angle beyond the rest angle [rad]
+  kAngularSpeed,  ///< rate of the angle, over the last step [rad/s]
+  kMoment,        ///< without states of the present positions, else of the last step [N m]
+  kRestAngle      ///< present rest angle [rad]
 };
 
 /// What a variable of many MATs or links takes of their values.
@@ -57,13 +63,18 @@ enum class Take : std::uint8_t { kOne, kLargest, kSmallest, kMean, kSum };
 
 /// True for a variable of a MAT along a direction.
 constexpr bool has_direction(VariableKind kind) noexcept {
-  return kind <= VariableKind::kForce || kind >= VariableKind::kCenterOfMass;
+  return kind <= VariableKind::kForce ||
+         (kind >= VariableKind::kCenterOfMass && kind <= VariableKind::kContactForce);
 }
 constexpr bool is_of_mat(VariableKind kind) noexcept {
   return kind <= VariableKind::kSpeed;
 }
+/// True for a variable that a bend alone has.
+constexpr bool is_of_angle(VariableKind kind) noexcept {
+  return kind >= VariableKind::kAngle;
+}
 constexpr bool is_of_link(VariableKind kind) noexcept {
-  return kind >= VariableKind::kDistance && kind <= VariableKind::kAge;
+  return (kind >= VariableKind::kDistance && kind <= VariableKind::kAge) || is_of_angle(kind);
 }
 constexpr bool is_count(VariableKind kind) noexcept {
   return kind == VariableKind::kPieces || kind == VariableKind::kBonds;

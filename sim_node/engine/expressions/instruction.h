@@ -27,12 +27,22 @@ enum class Quantity : std::uint8_t {
   kMassA = 11,       ///< mass of end a [kg]; 0 for a fixed point or a port mass
   kMassB = 12,
   kSlid =
-      13,     ///< stretch of the spring of its friction as the last step ended [m], >= 0; 0 without
-              ///< friction
-  kNone = 14  ///< not a quantity: of a change of state that was forced from outside
+      13,  ///< stretch of the spring of its friction as the last step ended [m], >= 0; 0 without
+           ///< friction
+  kAngle = 14,         ///< angle of a bend [rad], in 2 dimensions within +-pi
+  kBend = 15,          ///< angle beyond the rest angle [rad], in 2 dimensions within +-pi
+  kAngularSpeed = 16,  ///< rate of the angle, from x(n) - x(n-1) [rad/s]
+  kMoment = 17,  ///< moment in the last step [N m], positive against a positive bend; 0 at step 0
+  kRestAngle = 18,  ///< present rest angle [rad]
+  kNone = 19        ///< not a quantity: of a change of state that was forced from outside
 };
-inline constexpr std::size_t kQuantityCount = 14;
+inline constexpr std::size_t kQuantityCount = 19;
 static_assert(static_cast<std::size_t>(Quantity::kNone) == kQuantityCount);
+
+/// True for what a bend alone has; it has an age beside them, and nothing else.
+constexpr bool is_of_angle(Quantity quantity) noexcept {
+  return quantity >= Quantity::kAngle && quantity <= Quantity::kRestAngle;
+}
 
 /// What one instruction does with the values on top of the stack. Truth is 1 or 0; any value that
 /// is not 0 counts as true. Comparisons with NaN are false, kNotEqual is true.

@@ -40,6 +40,7 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
   }
   if (!network.maxwell_links.empty()) return refusal(LiaisonKind::kMaxwellLink, 0, "viscosity");
   for (std::size_t l = 0; l < network.bends.size(); ++l) {
+    if (network.bends[l].has_states()) return refusal(LiaisonKind::kBend, l, "states");
     if (network.bends[l].viscosity > 0.0) return refusal(LiaisonKind::kBend, l, "viscosity");
   }
   for (std::size_t s = 0; s < network.sets.size(); ++s) {

@@ -78,9 +78,10 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       table(make_table(description().state_machines)),
       state_links(description(), table),
       maxwell_links(description()),
-      bends(description()),
+      bends(description(), table),
       sets(description(), table, pair_kernel(width)),
-      log(table, std::max(kMinEventRoom, description().state_links.size())),
+      log(table,
+          std::max(kMinEventRoom, description().state_links.size() + description().bends.size())),
       port_inputs(description()),
       freezing(description().freeze_tolerance > 0.0 ? std::make_unique<Freezing>(description())
                                                     : nullptr),
@@ -135,6 +136,7 @@ void WorldState::start_one_period_ago() noexcept {
   links.start();
   vector_springs.start();
   bends.forget_viscous_forces();
+  bends.forget_moments();
   state_links.forget_tensions();
 }
 
@@ -194,7 +196,7 @@ StepEnergy WorldState::add_explicit_forces(const ForceColumns& columns) noexcept
     work += state_links.add_forces(state_machines, table, columns, step_count, log);
   }
   work += add_maxwell_forces(columns);
-  work += bends.add_forces(columns);
+  work += bends.add_forces(state_machines, table, columns, step_count, log);
   work += add_set_forces(columns);
   return work;
 }
@@ -232,7 +234,7 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
   const double taken = add_maxwell_forces(as_it_moved).dissipated;
   if (step_count > 0) energy.dissipated += taken;  // the account begins at the moment of step 0
   bends.forget_viscous_forces();
-  of_links += bends.add_forces(extrapolated);
+  of_links += bends.add_forces(state_machines, table, extrapolated, step_count, log);
   of_links += of_last_sets;
   of_links += add_set_forces(extrapolated);
   if (freezing) freezing->restore_forces(mats);
@@ -255,12 +257,18 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
       throw std::invalid_argument("a viscosity is too large for the step");
     }
   }
+  const auto is_of_it = [index](const Bend& bend) { return bend.state_machine == index; };
+  if (std::ranges::any_of(description().bends, is_of_it) &&
+      refused_in_bends(state_machine) != nullptr) {
+    throw std::invalid_argument("a bend has a stiffness and a viscosity in each state, no more");
+  }
   if (rubs(state_machine) != rubs(table.state_machines()[index])) {
     throw std::invalid_argument("friction neither comes nor goes");
   }
   const double before = stored_energy();
   table.replace(index, state_machine);
   state_links.adopt(table);
+  bends.adopt(table);
   sets.adopt(table);
   if (freezing) freezing->adopt(description(), table.state_machines());
   StepEnergy change;
@@ -278,7 +286,7 @@ Archive WorldState::serialize(Archive archive) {
   vector_springs.serialize(archive);
   state_links.serialize(archive, table);
   maxwell_links.serialize(archive);
-  bends.serialize(archive);
+  bends.serialize(archive, table);
   log.serialize(archive);
   if (laws_ask_for_variables) archive.reals(table.variables());
   account.serialize(archive);
@@ -298,9 +306,11 @@ void WorldState::take(std::span<const double> row) {
   sets.make_room(mats.force_columns().position);
 }
 
-void WorldState::swap_table(StateTable& other, StateLinkArray& links_of_other) {
+void WorldState::swap_table(StateTable& other, StateLinkArray& links_of_other,
+                            BendArray& bends_of_other) {
   std::swap(table, other);
   std::swap(state_links, links_of_other);
+  std::swap(bends, bends_of_other);
   sets.adopt(table);
 }
 
@@ -323,12 +333,13 @@ void WorldState::restore(const Snapshot& snapshot) {
 void WorldState::restore_with_table(const Snapshot& snapshot) {
   StateTable table_of_snapshot = make_table(state_machines_of(snapshot, description()));
   StateLinkArray links_of_snapshot(description(), table_of_snapshot);
+  BendArray bends_of_snapshot(description(), table_of_snapshot);
   std::vector<double> own_sets;
   Archive saving = Archive::saving(own_sets);
   sets.serialize(saving, table);
-  swap_table(table_of_snapshot, links_of_snapshot);
+  swap_table(table_of_snapshot, links_of_snapshot, bends_of_snapshot);
   if (!matches(snapshot.state)) {
-    swap_table(table_of_snapshot, links_of_snapshot);
+    swap_table(table_of_snapshot, links_of_snapshot, bends_of_snapshot);
     Archive restoring = Archive::restoring(own_sets);
     sets.serialize(restoring, table);
     if (freezing) freezing->restored(port_inputs);

@@ -52,7 +52,7 @@ struct WorldState {
   StateTable make_table(std::vector<StateMachine> state_machines) const;
   /// Exchanges the table and the links that belong to it with others; of the sets only what has
   /// states in both keeps them.
-  void swap_table(StateTable& other, StateLinkArray& links_of_other);
+  void swap_table(StateTable& other, StateLinkArray& links_of_other, BendArray& bends_of_other);
 
   PairStep pair_step(bool frozen) noexcept {
     return {table, state_machines, log, step_count, frozen, !frozen};

@@ -13,10 +13,14 @@ using OfAngle = ElementaryFunctions<BendAngle>;
 
 BendShape::BendShape(const Bend& bend, int dimension) noexcept
     : per_ab_(1.0 / bend.length_ab), per_bc_(1.0 / bend.length_bc) {
-  if (dimension == 1) offset_ = bend.rest_angle;
+  set_rest(bend.rest_angle, dimension);
+}
+
+void BendShape::set_rest(double rest_angle, int dimension) noexcept {
+  if (dimension == 1) offset_ = rest_angle;
   if (dimension != 2) return;
-  cosine_ = OfAngle::cos(bend.rest_angle);
-  sine_ = OfAngle::sin(bend.rest_angle);
+  cosine_ = OfAngle::cos(rest_angle);
+  sine_ = OfAngle::sin(rest_angle);
 }
 
 Vec3 bend_at_start(const NetworkDescription& network, const Bend& bend) noexcept {

@@ -14,6 +14,8 @@ class BendShape {
  public:
   /// @param dimension  of the network
   BendShape(const Bend& bend, int dimension) noexcept;
+  /// Gives it another rest angle [rad]. Real time: O(1), no allocation.
+  void set_rest(double rest_angle, int dimension) noexcept;
 
   /// w at these positions.
   Vec3 operator()(const Vec3& a, const Vec3& b, const Vec3& c) const noexcept {

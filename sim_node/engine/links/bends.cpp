@@ -20,20 +20,43 @@ void add(double* columns, std::uint32_t mat, const Vec3& force) noexcept {
 
 }  // namespace
 
-BendArray::BendArray(const NetworkDescription& description)
-    : is_1d_(description.dimension == 1), viscous_moment_(3 * description.bends.size(), 0.0) {
+BendArray::BendArray(const NetworkDescription& description, const StateTable& table)
+    : dimension_(description.dimension),
+      dt_(description.step),
+      states_(description, table),
+      viscous_moment_(3 * description.bends.size(), 0.0) {
   rows_.reserve(description.bends.size());
   for (const Bend& bend : description.bends) {
-    rows_.push_back({bend.mat_a, bend.mat_b, bend.mat_c, bend.stiffness,
+    std::uint32_t state_row = kNoRow;
+    if (bend.has_states()) {
+      state_row = static_cast<std::uint32_t>(bend_of_row_.size());
+      bend_of_row_.push_back(static_cast<std::uint32_t>(rows_.size()));
+      with_states_.push_back(bend);
+    }
+    rows_.push_back({bend.mat_a, bend.mat_b, bend.mat_c, state_row, bend.stiffness,
                      bend.viscosity / description.step, BendShape(bend, description.dimension)});
   }
+  changes_.reserve(bend_of_row_.size());
+  adopt(table);
+}
+
+void BendArray::adopt(const StateTable& table) {
+  states_.adopt(table);
+  for (const std::uint32_t bend : bend_of_row_) put_state(table, rows_[bend]);
+}
+
+void BendArray::put_state(const StateTable& table, Row& row) noexcept {
+  const LinkState& state = table.state(states_.state_index(row.state_row));
+  row.stiffness = state.stiffness;
+  row.viscosity_over_dt = state.viscosity / dt_;
+  row.shape.set_rest(states_.rest_angle(row.state_row), dimension_);
 }
 
 /// Across the bend there is none, for that would turn all three MATs about each other. A straight one has no
 /// direction yet, and resists in all.
 Vec3 BendArray::viscous_moment(const Row& row, const Vec3& bend, const Vec3& moved) const noexcept {
   const double square = dot(bend, bend);
-  if (is_1d_ || !(square > 0.0)) return row.viscosity_over_dt * moved;
+  if (dimension_ == 1 || !(square > 0.0)) return row.viscosity_over_dt * moved;
   return (row.viscosity_over_dt * (dot(bend, moved) / square)) * bend;
 }
 
@@ -42,31 +65,107 @@ Vec3 BendArray::last_viscous_moment(std::size_t row) const noexcept {
   return {moment[0], moment[1], moment[2]};
 }
 
+void BendArray::add_moment(const Row& row, const Vec3& moment,
+                           const ForceColumns& columns) const noexcept {
+  const Vec3 on_a = row.shape.force_on_a(moment);
+  const Vec3 on_c = row.shape.force_on_c(moment);
+  add(columns.force, row.mat_a, on_a);
+  add(columns.force, row.mat_c, on_c);
+  add(columns.force, row.mat_b, -(on_a + on_c));
+}
+
+BendSides BendArray::sides_of(const Row& row, const ForceColumns& columns) noexcept {
+  const auto place = [&](std::uint32_t mat) -> Vec3 { return column(columns.position, mat); };
+  const auto way = [&](std::uint32_t mat) -> Vec3 {
+    return place(mat) - column(columns.delayed, mat);
+  };
+  return {place(row.mat_b) - place(row.mat_a), place(row.mat_c) - place(row.mat_b),
+          way(row.mat_b) - way(row.mat_a), way(row.mat_c) - way(row.mat_b)};
+}
+
+void BendArray::change_states(const StateKernel& kernel, const StateTable& table,
+                              const ForceColumns& columns, std::uint64_t step) noexcept {
+  for (std::uint32_t r = 0; r < bend_of_row_.size(); ++r) {
+    const Row& row = rows_[bend_of_row_[r]];
+    states_.set_angle(r, angle_of(with_states_[r], dimension_, sides_of(row, columns)));
+  }
+  states_.step(kernel, table, step, [&](const BendChange& change) {
+    Row& row = rows_[bend_of_row_[change.row]];
+    changes_.push_back({change, step, row.stiffness, row.shape});
+    put_state(table, row);
+  });
+}
+
+StepEnergy BendArray::add_forces(const StateKernel& kernel, const StateTable& table,
+                                 const ForceColumns& columns, std::uint64_t step,
+                                 EventLog& log) noexcept {
+  if (bend_of_row_.empty()) return add_forces(columns);
+  change_states(kernel, table, columns, step);
+  StepEnergy work = add_forces(columns);
+  for (const Change& change : changes_) work.switching += enter(table, change, columns, log);
+  changes_.clear();
+  return work;
+}
+
+/// What the change adds to the stored energy, as the account keeps it: StateTable::change_energy.
+double BendArray::enter(const StateTable& table, const Change& change, const ForceColumns& columns,
+                        EventLog& log) noexcept {
+  const Row& row = rows_[bend_of_row_[change.of_states.row]];
+  const auto energy_of = [&](double stiffness, const BendShape& shape) {
+    const auto bend_in = [&](const double* from) {
+      return shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
+    };
+    const Vec3 bend = bend_in(columns.position);
+    const Vec3 moved = bend - bend_in(columns.delayed);
+    return 0.5 * stiffness * dot(bend, bend) - table.part_of_work() * stiffness * dot(bend, moved);
+  };
+  const double energy =
+      energy_of(row.stiffness, row.shape) - energy_of(change.stiffness, change.shape);
+  const std::uint32_t machine = states_.state_machine(change.of_states.row);
+  const StateIndex first = table.first_state(machine);
+  log.add({change.step, kNoLink, row.mat_a, row.mat_c, machine, change.of_states.from - first,
+           change.of_states.to - first, change.of_states.quantity, change.of_states.value, energy});
+  return energy;
+}
+
 StepEnergy BendArray::add_forces(const ForceColumns& columns) noexcept {
   CORDIS_ASSERT(rows_.empty() || columns.axis_stride == 1);
   StepEnergy work;
+  auto next_change = changes_.begin();
   for (std::size_t l = 0; l < rows_.size(); ++l) {
     const Row& row = rows_[l];
-    const auto bend_in = [&row](const double* from) {
-      return row.shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
+    const auto bend_in = [&](const BendShape& shape, const double* from) {
+      return shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
     };
-    const Vec3 bend = bend_in(columns.position);
-    const Vec3 before = bend_in(columns.delayed);
+    const Vec3 bend = bend_in(row.shape, columns.position);
+    const Vec3 before = bend_in(row.shape, columns.delayed);
     const Vec3 moved = bend - before;
-    work.elastic += 0.5 * row.stiffness * dot(bend + before, moved);
+    const bool has_states = row.state_row != kNoRow;
+    const bool is_new =
+        has_states && next_change != changes_.end() && next_change->of_states.row == row.state_row;
     Vec3 moment = row.stiffness * bend;
-    if (row.viscosity_over_dt > 0.0) {
-      const Vec3 viscous = viscous_moment(row, bend, moved);
-      work.dissipated += 0.5 * dot(viscous + last_viscous_moment(l), moved);
-      std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * l);
-      moment += viscous;
+    if (is_new) {
+      // The force of the last step, of the law before the change, has done the first half of the way.
+      const Vec3 was = bend_in(next_change->shape, columns.delayed);
+      const Vec3 moved_then = bend_in(next_change->shape, columns.position) - was;
+      work.elastic += 0.5 * (dot(moment, moved) + next_change->stiffness * dot(was, moved_then));
+      work.dissipated += 0.5 * dot(last_viscous_moment(l), moved_then);
+      std::fill_n(viscous_moment_.data() + 3 * l, 3, 0.0);
+      ++next_change;
+    } else {
+      work.elastic += 0.5 * row.stiffness * dot(bend + before, moved);
+      if (row.viscosity_over_dt > 0.0 || has_states) {
+        const Vec3 viscous = viscous_moment(row, bend, moved);
+        work.dissipated += 0.5 * dot(viscous + last_viscous_moment(l), moved);
+        std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * l);
+        moment += viscous;
+      }
     }
-
-    const Vec3 on_a = row.shape.force_on_a(moment);
-    const Vec3 on_c = row.shape.force_on_c(moment);
-    add(columns.force, row.mat_a, on_a);
-    add(columns.force, row.mat_c, on_c);
-    add(columns.force, row.mat_b, -(on_a + on_c));
+    if (has_states) {
+      states_.set_moment(row.state_row, moment_about_middle(with_states_[row.state_row], dimension_,
+                                                            sides_of(row, columns), moment));
+    }
+    add_moment(row, moment, columns);
   }
   return work;
 }
@@ -103,8 +202,26 @@ void BendArray::forget_viscous_forces() noexcept {
   std::fill(viscous_moment_.begin(), viscous_moment_.end(), 0.0);
 }
 
-void BendArray::serialize(Archive& archive) {
+void BendArray::forget_moments() noexcept {
+  for (std::uint32_t r = 0; r < bend_of_row_.size(); ++r) states_.set_moment(r, 0.0);
+}
+
+void BendArray::force_state(const StateTable& table, std::uint32_t bend,
+                            std::uint32_t state) noexcept {
+  CORDIS_ASSERT(bend < rows_.size() && rows_[bend].state_row != kNoRow);
+  states_.force_state(table, rows_[bend].state_row, state);
+}
+
+void BendArray::serialize(Archive& archive, const StateTable& table) {
   archive.reals(viscous_moment_);
+  if (!bend_of_row_.empty()) states_.serialize(archive, table);
+  if (!archive.restores()) return;
+  for (std::size_t l = 0; l < rows_.size(); ++l) {  // the viscosity may have been taken away
+    const Row& row = rows_[l];
+    if (row.viscosity_over_dt == 0.0 && row.state_row == kNoRow)
+      std::fill_n(viscous_moment_.data() + 3 * l, 3, 0.0);
+  }
+  for (const std::uint32_t bend : bend_of_row_) put_state(table, rows_[bend]);
 }
 
 }  // namespace cordis::engine

@@ -7,6 +7,8 @@
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/bend_shape.h"
+#include "sim_node/engine/links/bend_states.h"
+#include "sim_node/engine/links/event_log.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/step_kernel.h"
@@ -17,12 +19,15 @@ namespace cordis::engine {
 /// width. Precondition of all calls: where there are bends, the MATs are stored by MAT.
 class BendArray {
  public:
-  explicit BendArray(const NetworkDescription& description);
+  BendArray(const NetworkDescription& description, const StateTable& table);
 
-  /// Adds the forces of every bend to its three MATs, in order.
+  /// Adds the forces of every bend to its three MATs, in order, in their present states.
   /// @return works [J] as SpringDamperArray::add_forces counts them in 3 dimensions
   /// Real time: O(bends), no allocation.
   StepEnergy add_forces(const ForceColumns& columns) noexcept;
+  /// Changes the states of a step first, and enters that in the log.
+  StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
+                        const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
   /// Work of the forces of the last call up to the present positions [J]. Real time: O(bends), no allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   /// Energy where the forces of the last call were computed [J]. Real time: O(bends), no allocation.
@@ -30,22 +35,66 @@ class BendArray {
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void forget_viscous_forces() noexcept;
 
-  void serialize(Archive& archive);
+  /// Forgets the moments of the last call of bends with states.
+  void forget_moments() noexcept;
+
+  /// Puts a bend with states into a state in the next step. Precondition: it has states, and that one.
+  void force_state(const StateTable& table, std::uint32_t bend, std::uint32_t state) noexcept;
+  /// Fits the bends to a table that has been changed. Allocates.
+  void adopt(const StateTable& table);
+
+  /// Precondition of these: the bend has states.
+  std::uint32_t state_of(const StateTable& table, std::uint32_t bend) const noexcept {
+    return states_.state_of(table, rows_[bend].state_row);
+  }
+  double age(std::uint32_t bend, std::uint64_t step) const noexcept {
+    return states_.age(rows_[bend].state_row, step);
+  }
+  double last_moment(std::uint32_t bend) const noexcept {
+    return states_.moment(rows_[bend].state_row);
+  }
+  double rest_angle(std::uint32_t bend) const noexcept {  ///< [rad]
+    return states_.rest_angle(rows_[bend].state_row);
+  }
+
+  void serialize(Archive& archive, const StateTable& table);
 
  private:
+  static constexpr std::uint32_t kNoRow = 0xffffffffU;
   struct Row {
     std::uint32_t mat_a;
     std::uint32_t mat_b;
     std::uint32_t mat_c;
+    std::uint32_t state_row;   // of states_, or kNoRow
     double stiffness;          // [N m/rad]
     double viscosity_over_dt;  // [N m/rad]
     BendShape shape;
   };
+  /// A change of state of this step, and the law before it.
+  struct Change {
+    BendChange of_states;
+    std::uint64_t step;
+    double stiffness;  // [N m/rad]
+    BendShape shape;
+  };
+  void change_states(const StateKernel& kernel, const StateTable& table,
+                     const ForceColumns& columns, std::uint64_t step) noexcept;
+  /// Enters a change in the log. @return energy that it brought into the bend [J]
+  double enter(const StateTable& table, const Change& change, const ForceColumns& columns,
+               EventLog& log) noexcept;
+  static BendSides sides_of(const Row& row, const ForceColumns& columns) noexcept;
+  void put_state(const StateTable& table, Row& row) noexcept;
+  void add_moment(const Row& row, const Vec3& moment, const ForceColumns& columns) const noexcept;
   Vec3 viscous_moment(const Row& row, const Vec3& bend, const Vec3& moved) const noexcept;
   Vec3 last_viscous_moment(std::size_t row) const noexcept;
 
-  bool is_1d_;
+  int dimension_;
+  double dt_;  // [s]
   std::vector<Row> rows_;
+  std::vector<Bend> with_states_;           // by row of states_
+  std::vector<std::uint32_t> bend_of_row_;  // likewise
+  BendStates states_;
+  std::vector<Change> changes_;           // of this step, in the order of the rows
   AlignedVector<double> viscous_moment_;  // of the last call, 3 per row [N m]
 };
 

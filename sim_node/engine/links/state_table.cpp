@@ -359,6 +359,14 @@ Quantity StateTable::triggered(StateIndex from, std::uint32_t exit) const noexce
   return exit == kNotForced ? Quantity::kNone : content_->terms[from].exits[exit].triggered;
 }
 
+bool StateTable::keeps_rest(StateIndex from, std::uint32_t exit) const noexcept {
+  return exit == kNotForced || content_->terms[from].exits[exit].rest == RestCode::kKeep;
+}
+
+double StateTable::part_of_work() const noexcept {
+  return content_->part_of_work;
+}
+
 void StateTable::replace(std::uint32_t index, const StateMachine& state_machine) {
   CORDIS_ASSERT(index < content_->state_machines.size() &&
                 state_machine.states.size() == content_->state_machines[index].states.size() &&

@@ -69,6 +69,10 @@ class StateTable {
                           const EndMasses& mass, double elongation_increment) const noexcept;
   /// The condition's quantity of an exit; kNone when it was forced.
   Quantity triggered(StateIndex from, std::uint32_t exit) const noexcept;
+  /// True if an exit leaves the rest length as it is, or the change was forced.
+  bool keeps_rest(StateIndex from, std::uint32_t exit) const noexcept;
+  /// Part of the elastic work of a period that the account enters after the step.
+  double part_of_work() const noexcept;
 
   /// Gives a state machine other parameters. Allocates.
   /// Precondition: as many states as before, well-formed.

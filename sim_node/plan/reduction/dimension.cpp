@@ -62,11 +62,14 @@ bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
   if (!network.state_links.empty()) return false;
   if (std::ranges::any_of(network.state_machines, engine::rubs)) return false;
-  const auto is_bent = [](const engine::Bend& bend) { return bend.rest_angle != 0.0; };
+  const auto is_bent = [](const engine::Bend& bend) {
+    return bend.rest_angle != 0.0 || bend.has_states();
+  };
   if (std::ranges::any_of(network.bends, is_bent)) return false;
   const auto has_sign = [](const engine::Variable& variable) {
-    return variable.quantity >= engine::VariableKind::kDistance &&
-           variable.quantity <= engine::VariableKind::kTension;
+    return (variable.quantity >= engine::VariableKind::kDistance &&
+            variable.quantity <= engine::VariableKind::kTension) ||
+           engine::is_of_angle(variable.quantity);
   };
   if (asks_for(scene, has_sign)) return false;
   // Where both ends are at one place there is no direction, and no force, but in 1 dimension.

@@ -54,6 +54,13 @@ OdeSystem::OdeSystem(engine::NetworkDescription network)
     states_.push_back({state_machine.start, link.rest_length, -1.0});
     has_states_ = has_states_ || !state_machine.exits.empty();
   }
+  for (const engine::Bend& bend : network_.bends) {
+    bends_.push_back({0, bend.rest_angle, -1.0});
+    if (!bend.has_states()) continue;
+    const engine::StateMachine& state_machine = network_.state_machines[bend.state_machine];
+    bends_.back().state = state_machine.start;
+    has_states_ = has_states_ || !state_machine.exits.empty();
+  }
   for (std::uint32_t s = 0; s < network_.sets.size(); ++s) {
     sets_.push_back({NearPairs(network_, s), {}});
     has_states_ =
@@ -202,17 +209,10 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     add_pair_force(link.mat_a, link.mat_b, force * line.direction);
     rate[2 * n + l] = link.stiffness * (line.speed - force / link.viscosity);
   }
-  for (const engine::Bend& bend : network_.bends) {
+  for (std::uint32_t b = 0; b < network_.bends.size(); ++b) {
+    const engine::Bend bend = present_bend(b);
     const engine::BendShape shape(bend, network_.dimension);
-    const Vec3 w = shape(position(values, bend.mat_a), position(values, bend.mat_b),
-                         position(values, bend.mat_c));
-    const Vec3 at_rest = shape(Vec3::Zero(), Vec3::Zero(), Vec3::Zero());
-    const Vec3 rate_of_w = shape(velocity(values, bend.mat_a), velocity(values, bend.mat_b),
-                                 velocity(values, bend.mat_c)) -
-                           at_rest;
-    const double square = network_.dimension == 1 ? 0.0 : w.squaredNorm();
-    const Vec3 along = square > 0.0 ? Vec3(w * (w.dot(rate_of_w) / square)) : rate_of_w;
-    const Vec3 moment = bend.stiffness * w + bend.viscosity * along;
+    const Vec3 moment = engine::moment_of(bend, network_.dimension, sides(values, bend));
     add_pair_force(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
     add_pair_force(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
   }
@@ -247,6 +247,83 @@ engine::LinkQuantities OdeSystem::quantities(const Joined& joined, double time,
           mass(joined.mat_b)};
 }
 
+engine::Bend OdeSystem::present_bend(std::uint32_t index) const {
+  engine::Bend bend = network_.bends[index];
+  if (!bend.has_states()) return bend;
+  const engine::LinkState& state =
+      network_.state_machines[bend.state_machine].states[bends_[index].state];
+  bend.stiffness = state.stiffness;
+  bend.viscosity = state.viscosity;
+  bend.rest_angle = bends_[index].rest_length;
+  return bend;
+}
+
+engine::BendSides OdeSystem::sides(const Values& values, const engine::Bend& bend) const {
+  return {position(values, bend.mat_b) - position(values, bend.mat_a),
+          position(values, bend.mat_c) - position(values, bend.mat_b),
+          velocity(values, bend.mat_b) - velocity(values, bend.mat_a),
+          velocity(values, bend.mat_c) - velocity(values, bend.mat_b)};
+}
+
+engine::LinkQuantities OdeSystem::quantities(std::uint32_t index, double time,
+                                             const Values& values) const {
+  const engine::Bend bend = present_bend(index);
+  const int dimension = network_.dimension;
+  const engine::BendSides found = sides(values, bend);
+  const engine::AngleAndRate angle = engine::angle_of(bend, dimension, found);
+  engine::LinkQuantities now{};
+  const auto put = [&now](engine::Quantity quantity, double value) {
+    now[static_cast<std::size_t>(quantity)] = value;
+  };
+  put(engine::Quantity::kAngle, angle.angle);
+  put(engine::Quantity::kBend, engine::angle_beyond(bend.rest_angle, angle.angle, dimension));
+  put(engine::Quantity::kAngularSpeed, angle.rate);
+  put(engine::Quantity::kMoment,
+      engine::moment_about_middle(bend, dimension, found,
+                                  engine::moment_of(bend, dimension, found)));
+  put(engine::Quantity::kRestAngle, bend.rest_angle);
+  put(engine::Quantity::kAge, time - std::max(bends_[index].entered, 0.0));
+  return now;
+}
+
+std::int64_t OdeSystem::exit_of_bend(std::uint32_t index, double time, const Values& values) {
+  if (!network_.bends[index].has_states()) return -1;
+  const engine::StateMachine& state_machine =
+      network_.state_machines[network_.bends[index].state_machine];
+  const engine::LinkState& state = state_machine.states[bends_[index].state];
+  if (state.first_exit == state.last_exit) return -1;
+  const engine::LinkQuantities now = quantities(index, time, values);
+  for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+    const engine::Program& when = state_machine.exits[e].when;
+    if (has_edge(when) && time > std::max(bends_[index].entered, 0.0)) {
+      const engine::LinkQuantities before = quantities(index, time, earlier(time, values));
+      if (value_of(when, now, &before) != 0.0) return e;
+    } else if (value_of(when, now) != 0.0) {
+      return e;
+    }
+  }
+  return -1;
+}
+
+void OdeSystem::change_bend(std::uint32_t index, double time, const Values& values) {
+  const std::int64_t exit_index = exit_of_bend(index, time, values);
+  if (exit_index < 0) return;
+  const engine::StateMachine& state_machine =
+      network_.state_machines[network_.bends[index].state_machine];
+  const engine::Transition& exit = state_machine.exits[static_cast<std::size_t>(exit_index)];
+  const engine::LinkQuantities now = quantities(index, time, values);
+  Present& present = bends_[index];
+  if (exit.rest == engine::RestRule::kExpression) {
+    present.rest_length = value_of(exit.rest_length, now);
+  } else if (exit.rest == engine::RestRule::kHere) {
+    present.rest_length = now[static_cast<std::size_t>(engine::Quantity::kAngle)];
+  } else if (state_machine.states[exit.target].rest_angle) {
+    present.rest_length = *state_machine.states[exit.target].rest_angle;
+  }
+  present.state = exit.target;
+  present.entered = time;
+}
+
 const OdeSystem::Values& OdeSystem::earlier(double time, const Values& values) {
   if (earlier_is_known_) return earlier_;
   const double moment = kMoment * network_.step;
@@ -278,13 +355,16 @@ std::int64_t OdeSystem::exit_of(const Joined& joined, double time, const Values&
 std::optional<OdeSystem::Change> OdeSystem::next_change(double time, const Values& values) {
   earlier_is_known_ = false;
   for (std::uint32_t l = 0; l < states_.size(); ++l) {
-    if (exit_of(joined(l), time, values) >= 0) return Change{l, 0, {}};
+    if (exit_of(joined(l), time, values) >= 0) return Change{l, {}, 0, {}};
+  }
+  for (std::uint32_t b = 0; b < bends_.size(); ++b) {
+    if (exit_of_bend(b, time, values) >= 0) return Change{{}, b, 0, {}};
   }
   std::optional<Change> found;
   for (std::uint32_t s = 0; s < sets_.size() && !found; ++s) {
     if (network_.state_machines[network_.sets[s].state_machine].exits.empty()) continue;
     each_pair(s, values, [&](NearPairs::Pair pair, const Present& present) {
-      if (exit_of(joined(s, pair, present), time, values) >= 0) found = Change{{}, s, pair};
+      if (exit_of(joined(s, pair, present), time, values) >= 0) found = Change{{}, {}, s, pair};
       return !found;
     });
   }
@@ -293,6 +373,10 @@ std::optional<OdeSystem::Change> OdeSystem::next_change(double time, const Value
 
 void OdeSystem::change(const Change& change, double time, const Values& values) {
   earlier_is_known_ = false;
+  if (change.bend) {
+    change_bend(*change.bend, time, values);
+    return;
+  }
   Present present;
   if (change.state_link) {
     present = states_[*change.state_link];

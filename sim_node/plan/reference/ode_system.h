@@ -9,6 +9,7 @@
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/expressions/program.h"
+#include "sim_node/engine/links/bend_angle.h"
 #include "sim_node/plan/reference/near_pairs.h"
 
 namespace cordis::plan {
@@ -23,9 +24,10 @@ class OdeSystem {
  public:
   using Values = std::vector<double>;
 
-  /// A state link, or a pair of a set, whose state is to change.
+  /// A state link, a bend, or a pair of a set, whose state is to change.
   struct Change {
     std::optional<std::uint32_t> state_link;
+    std::optional<std::uint32_t> bend;
     std::uint32_t set = 0;
     NearPairs::Pair pair;
   };
@@ -39,11 +41,13 @@ class OdeSystem {
   /// The force from outside [N] on a mass, until it is set again.
   void hold_force(std::uint32_t mat, const engine::Vec3& force);
 
-  /// The first state link, or else pair, one of whose exits holds.
+  /// The first state link, or else bend, or else pair, one of whose exits holds.
   std::optional<Change> next_change(double time, const Values& values);
   /// Takes it to its next state.
   void change(const Change& change, double time, const Values& values);
   std::uint32_t state_of(std::uint32_t state_link) const { return states_[state_link].state; }
+  /// Precondition: the bend has states.
+  std::uint32_t state_of_bend(std::uint32_t bend) const { return bends_[bend].state; }
   bool has_states() const noexcept { return has_states_; }
 
   const engine::NetworkDescription& network() const noexcept { return network_; }
@@ -82,11 +86,17 @@ class OdeSystem {
   Present fresh(std::uint32_t set, NearPairs::Pair pair) const;
   Joined joined(std::uint32_t state_link) const;
   Joined joined(std::uint32_t set, NearPairs::Pair pair, const Present& present) const;
+  engine::Bend present_bend(std::uint32_t bend) const;
+  engine::BendSides sides(const Values& values, const engine::Bend& bend) const;
+  engine::LinkQuantities quantities(std::uint32_t bend, double time, const Values& values) const;
+  std::int64_t exit_of_bend(std::uint32_t bend, double time, const Values& values);
+  void change_bend(std::uint32_t bend, double time, const Values& values);
   template <class Visit>
   void each_pair(std::uint32_t set, const Values& values, Visit visit);
 
   engine::NetworkDescription network_;
   std::vector<Present> states_;
+  std::vector<Present> bends_;  // of all bends
   std::vector<Set> sets_;
   std::vector<engine::Vec3> held_;  // forces from outside, per MAT
   bool has_states_ = false;

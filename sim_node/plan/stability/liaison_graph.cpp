@@ -432,7 +432,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         {link.mat_a, link.mat_b, link.stiffness, 0.0, {LiaisonKind::kMaxwellLink, index++}});
   }
   for (index = 0; index < network.bends.size(); ++index) {
-    add_bend(network.bends[index], index, graph);
+    add_bend(network.stiffest_of(network.bends[index]), index, graph);
   }
   double stored = 0.0;
   for (index = 0; index < network.sets.size(); ++index)

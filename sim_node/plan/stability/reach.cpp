@@ -98,7 +98,10 @@ double energy_brought(const engine::NetworkDescription& network) {
     energy += 0.5 * link.start_force * link.start_force / link.stiffness;
   }
   for (const engine::Bend& bend : network.bends) {
-    energy += 0.5 * bend.stiffness * engine::bend_at_start(network, bend).squaredNorm();
+    const double w = engine::bend_at_start(network, bend).norm();
+    energy +=
+        0.5 * network.stiffest_of(bend).stiffness *
+        (bend.has_states() ? std::max(4.0, w * w) : w * w);  // a change may fold it the other way
   }
   for (const engine::SetLiaison& set : network.sets) energy += stored_by_friction(network, set);
   if (needs_energy(network)) {

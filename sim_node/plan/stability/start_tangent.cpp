@@ -149,7 +149,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
         weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
   }
   for (const engine::Bend& bend : network.bends) {
-    add_bend(network, bend, weights.stiffness, weights.viscosity);
+    add_bend(network, network.at_start(bend), weights.stiffness, weights.viscosity);
   }
   for (const engine::SetLiaison& set : network.sets) {
     add_set(network, set, weights.stiffness, weights.viscosity);

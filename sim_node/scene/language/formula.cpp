@@ -68,11 +68,27 @@ void add_operation(std::vector<Instruction>& code, Operation operation, std::uin
   code.back().constant = engine::apply(added, values.data());
 }
 
+const QuantityName* quantity_of(ExpressionOwner owner, const std::string& word) {
+  return owner == ExpressionOwner::kBend ? find_bend_quantity(word) : find_quantity(word);
+}
+
+/// The words of the quantities of an owner.
+std::vector<std::string> quantity_words_of(ExpressionOwner owner) {
+  std::vector<std::string> words;
+  if (owner == ExpressionOwner::kBend) {
+    for (const QuantityName& known : kBendQuantityNames) words.emplace_back(known.word);
+    return words;
+  }
+  for (const QuantityName& known : kQuantityNames) words.emplace_back(known.word);
+  words.emplace_back(kNormalForceWord);
+  return words;
+}
+
 /// The reference of a word that names something outside the link; nothing when it names none.
 std::optional<VariableReference> reference_of(const Expression& expression,
                                               const ExpressionWord& word,
                                               const ParameterValues& parameters,
-                                              const AskedOutside& outside) {
+                                              const AskedOutside& outside, ExpressionOwner owner) {
   const config::Place place = expression.place_of(word);
   if (word.kind == ExpressionWord::Kind::kOfAnother) {
     const std::size_t dot = word.name.rfind('.');
@@ -81,7 +97,7 @@ std::optional<VariableReference> reference_of(const Expression& expression,
   }
   const bool is_known = word.name == kTimeWord || outside.signals.contains(word.name);
   if (word.kind != ExpressionWord::Kind::kName || !is_known) return {};
-  if (find_quantity(word.name) != nullptr || parameters.find(word.name)) return {};
+  if (quantity_of(owner, word.name) != nullptr || parameters.find(word.name)) return {};
   return VariableReference{{}, word.name, {}, place};
 }
 
@@ -90,7 +106,7 @@ std::optional<VariableReference> reference_of(const Expression& expression,
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, Problems& problems,
-                                          AskedOutside* outside) {
+                                          AskedOutside* outside, ExpressionOwner owner) {
   CompiledExpression compiled;
   std::vector<Instruction>& code = compiled.program.code;
   const std::size_t errors_before = problems.error_count();
@@ -104,7 +120,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       continue;
     }
     std::optional<VariableReference> reference;
-    if (outside != nullptr) reference = reference_of(expression, word, parameters, *outside);
+    if (outside != nullptr) reference = reference_of(expression, word, parameters, *outside, owner);
     if (reference) {
       const auto slot = static_cast<std::uint32_t>(outside->references.size());
       code.push_back({Operation::kVariable, engine::Quantity::kDistance, 0.0, slot});
@@ -116,7 +132,7 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       problems.error(expression.place_of(word), what + " cannot ask for '" + word.name + "'",
                      "a condition or a law of a liaison asks for what is outside its link");
     } else if (word.kind == ExpressionWord::Kind::kName) {
-      if (const QuantityName* const known = find_quantity(word.name)) {
+      if (const QuantityName* const known = quantity_of(owner, word.name)) {
         code.push_back({Operation::kQuantity, known->quantity, 0.0, 0});
         if (word.name == kNormalForceWord) {
           code.push_back({Operation::kNegate, engine::Quantity::kDistance, 0.0, 0});
@@ -129,15 +145,17 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
       const std::optional<double> value = parameters.find(word.name);
       if (!value) {
         std::vector<std::string> words = parameters.names();
-        for (const QuantityName& known : kQuantityNames) words.emplace_back(known.word);
-        words.emplace_back(kNormalForceWord);
+        for (std::string& known : quantity_words_of(owner)) words.push_back(std::move(known));
         if (outside != nullptr) {
           words.insert(words.end(), outside->signals.begin(), outside->signals.end());
           words.emplace_back(kTimeWord);
         }
+        std::string hint = config::did_you_mean(word.name, words);
+        if (hint.empty() && owner == ExpressionOwner::kBend)
+          hint = "a bend has angle_rad, bend_rad, speed_rad_per_s, moment_n_m, rest_rad, age_s";
         problems.error(expression.place_of(word),
                        what + " names '" + word.name + "', which is no quantity and no parameter",
-                       config::did_you_mean(word.name, words));
+                       hint);
       }
       number = value.value_or(1.0);
     }
@@ -371,7 +389,7 @@ bool asks_outside(const Value& value, const ParameterValues& parameters,
   std::vector<VariableReference> references;
   const AskedOutside outside{signals, references};
   return std::ranges::any_of(expression->words, [&](const ExpressionWord& word) {
-    return reference_of(*expression, word, parameters, outside).has_value();
+    return reference_of(*expression, word, parameters, outside, ExpressionOwner::kLink).has_value();
   });
 }
 

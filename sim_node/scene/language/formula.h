@@ -73,6 +73,9 @@ struct AskedOutside {
       references;  ///< references of the liaison; Instruction::slot is a place here
 };
 
+/// Whose quantities an expression asks for.
+enum class ExpressionOwner { kLink, kBend };
+
 /// A condition or a formula over the quantities of a link, for the engine.
 struct CompiledExpression {
   engine::Program program;
@@ -86,7 +89,8 @@ struct CompiledExpression {
 std::optional<CompiledExpression> compile(const Expression& expression, const std::string& what,
                                           const ParameterValues& parameters,
                                           std::uint32_t& next_slot, config::Problems& problems,
-                                          AskedOutside* outside = nullptr);
+                                          AskedOutside* outside = nullptr,
+                                          ExpressionOwner owner = ExpressionOwner::kLink);
 
 /// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg, the
 /// parameters and what is outside the link. Whatever is wrong is a problem of its place.

@@ -31,6 +31,16 @@ inline constexpr QuantityName kQuantityNames[] = {
     {"mass_b_kg", engine::Quantity::kMassB},
 };
 
+/// Quantities of a bend, a liaison of three MATs.
+inline constexpr QuantityName kBendQuantityNames[] = {
+    {"angle_rad", engine::Quantity::kAngle},
+    {"bend_rad", engine::Quantity::kBend},
+    {"speed_rad_per_s", engine::Quantity::kAngularSpeed},
+    {"moment_n_m", engine::Quantity::kMoment},
+    {"rest_rad", engine::Quantity::kRestAngle},
+    {"age_s", engine::Quantity::kAge},
+};
+
 /// How hard the link has pushed in the last step [N], >= 0: max(-force_n, 0).
 inline constexpr const char* kNormalForceWord = "normal_force_n";
 
@@ -41,6 +51,14 @@ inline constexpr const char* kTimeWord = "time_s";
 constexpr const QuantityName* find_quantity(std::string_view word) noexcept {
   if (word == kNormalForceWord) word = "force_n";
   for (const QuantityName& known : kQuantityNames) {
+    if (word == known.word) return &known;
+  }
+  return nullptr;
+}
+
+/// Finds a word among the quantities of a bend, likewise.
+constexpr const QuantityName* find_bend_quantity(std::string_view word) noexcept {
+  for (const QuantityName& known : kBendQuantityNames) {
     if (word == known.word) return &known;
   }
   return nullptr;

@@ -9,21 +9,32 @@ BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterV
                       config::Problems& problems) {
   using config::Range;
   using engine::kMaxRestAngle;
-  constexpr const char* kRestAngle = "rest_rad";
+  constexpr const char* kRestAngle = kBendRest;
   constexpr const char* kLength = "length_m";
   BendLaw law;
-  law.stiffness =
-      required_formula(reader, kBendStiffness, Range::not_negative(), parameters, problems);
-  law.viscosity =
-      optional_formula(reader, kBendViscosity, 0.0, Range::not_negative(), parameters, problems);
+  if (reader.has("states")) {
+    for (const char* key : {kBendStiffness, kBendViscosity}) {
+      if (!reader.has(key)) continue;
+      reader.optional_value(key);
+      reader.error_at(key, "each state of " + reader.what() + " has its own '" + key + "'",
+                      "write it in the states");
+    }
+  } else {
+    law.stiffness =
+        required_formula(reader, kBendStiffness, Range::not_negative(), parameters, problems);
+    law.viscosity =
+        optional_formula(reader, kBendViscosity, 0.0, Range::not_negative(), parameters, problems);
+  }
+  const std::size_t errors_before = problems.error_count();
   law.rest_angle = optional_formula(reader, kRestAngle, 0.0, {-kMaxRestAngle, kMaxRestAngle},
                                     parameters, problems);
-  for (const char* key : {"states", "start", "elasticity", "dissipation"}) {
+  for (const char* key : {"elasticity", "dissipation", "friction", "force_limit_n"}) {
     if (!reader.has(key)) continue;
     reader.optional_value(key);
-    reader.error_at(key, "a bending liaison has no " + std::string(key) + ": its law is linear");
+    reader.error_at(
+        key, "a bending liaison has no " + std::string(key) + ": its law is linear in each state");
   }
-  if (space == 3 && law.rest_angle != 0.0) {
+  if (space == 3 && law.rest_angle != 0.0 && problems.error_count() == errors_before) {
     reader.error_at(
         kRestAngle,
         "in 3 dimensions a bend has no sign, so the rest of " + reader.what() + " is straight",

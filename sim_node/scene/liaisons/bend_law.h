@@ -11,6 +11,7 @@ namespace cordis::scene {
 inline constexpr const char* kBending = "bending";  ///< its kind
 inline constexpr const char* kBendStiffness = "stiffness_n_m_per_rad";
 inline constexpr const char* kBendViscosity = "viscosity_n_m_s_per_rad";
+inline constexpr const char* kBendRest = "rest_rad";
 
 /// What three MATs are joined by: see engine::Bend.
 struct BendLaw {
@@ -21,7 +22,7 @@ struct BendLaw {
                                  ///< none
 };
 
-/// Reads the keys of a liaison of this kind.
+/// Reads the keys of a liaison of this kind, but for its states: with them it has no stiffness of its own.
 BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterValues& parameters,
                       config::Problems& problems);
 

@@ -198,7 +198,7 @@ bool check_condition(const Program& when, const config::Place& place, const std:
 
 }  // namespace
 
-void diagnose(const StateMachine& state_machine, const StateMachinePlaces& places,
+void diagnose(const StateMachine& state_machine, const StateMachinePlaces& places, bool is_of_bend,
               const std::string& what, config::Problems& problems) {
   check_states(state_machine, places, what, problems);
   std::vector<bool> open(state_machine.exits.size());
@@ -206,6 +206,7 @@ void diagnose(const StateMachine& state_machine, const StateMachinePlaces& place
     open[e] = check_condition(state_machine.exits[e].when, places.exits[e], what, problems) &&
               !asks_for_variable(state_machine.exits[e].when);  // whose value is not known here
   }
+  if (is_of_bend) return;
 
   Entries entries(state_machine);
   for (const LinkState& from : state_machine.states) {

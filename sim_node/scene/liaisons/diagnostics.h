@@ -13,8 +13,9 @@ namespace cordis::scene {
 ///   step, whatever the length of a step is, and the outcome would depend on that length. Seen by
 ///   trying entries of many links whose ends move slowly: the speed is 0 unless the condition of
 ///   the entry asks for one.
+/// @param is_of_bend  then no entries are tried
 /// @param what  names the liaison in messages
 void diagnose(const engine::StateMachine& state_machine, const StateMachinePlaces& places,
-              const std::string& what, config::Problems& problems);
+              bool is_of_bend, const std::string& what, config::Problems& problems);
 
 }  // namespace cordis::scene

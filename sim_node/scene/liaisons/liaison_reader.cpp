@@ -90,7 +90,7 @@ class LiaisonReader {
     } else if (kind == "state_machine") {
       law = read_states(reader, parameters);
     } else if (kind == kBending) {
-      law.bend = read_bend_law(reader, space_, parameters, problems_);
+      law = read_bend(reader, parameters);
     } else if (changes(written, kind, parameters)) {
       law = read_changing(reader, kind, parameters);
     } else {
@@ -259,6 +259,28 @@ class LiaisonReader {
     read_rest(reader, law, parameters);
     law.reach = read_reach(reader, parameters);
     if (problems_.error_count() != errors_before) return law;
+    return with_states(reader, std::move(law), std::move(state_machine), places);
+  }
+
+  LinkLaw read_bend(MappingReader& reader, const ParameterValues& parameters) {
+    LinkLaw law;
+    law.kind = LinkKind::kBend;
+    const std::size_t errors_before = problems_.error_count();
+    law.bend = read_bend_law(reader, space_, parameters, problems_);
+    if (!reader.has("states")) return law;
+    StateMachinePlaces places;
+    AskedOutside outside{liaisons_.signals(), law.references};
+    engine::StateMachine state_machine =
+        read_bend_states(reader, space_, parameters, outside, places, problems_);
+    if (problems_.error_count() != errors_before) return law;
+    const std::optional<double> rest = state_machine.states[state_machine.start].rest_angle;
+    if (rest) law.bend->rest_angle = *rest;
+    return with_states(reader, std::move(law), std::move(state_machine), places);
+  }
+
+  /// The law with its state machine, once that has been checked.
+  LinkLaw with_states(const MappingReader& reader, LinkLaw law, engine::StateMachine state_machine,
+                      const StateMachinePlaces& places) {
     state_machine.name = open_.back();
     try {
       engine::check_state_machine(state_machine, reader.what(), law.references.size());
@@ -266,7 +288,8 @@ class LiaisonReader {
       problems_.error(reader.place(), refusal.what());
       return law;
     }
-    if (with_diagnostics_) diagnose(state_machine, places, reader.what(), problems_);
+    if (with_diagnostics_)
+      diagnose(state_machine, places, law.bend.has_value(), reader.what(), problems_);
     law.state_machine = std::make_shared<const engine::StateMachine>(std::move(state_machine));
     return law;
   }

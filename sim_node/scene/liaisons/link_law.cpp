@@ -123,7 +123,7 @@ void place_state_machines(const Use& use, const std::string& liaison,
   const auto put = [&](LinkLaw& part) {
     part.liaison = liaison;
     part.overrides = overrides;
-    if (part.kind != LinkKind::kState) return;
+    if (part.state_machine == nullptr) return;
     part.state_machine_index = use.liaisons.pool().index_of(
         {liaison, overrides, part.part, use.owner}, *part.state_machine, part.references);
   };
@@ -164,7 +164,7 @@ bool rubs(const LinkLaw& law) {
 
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law) {
   CORDIS_ASSERT(law.kind != LinkKind::kMaxwell);
-  if (law.kind == LinkKind::kState) return law.state_machine;
+  if (law.state_machine != nullptr) return law.state_machine;
   engine::StateMachine state_machine;
   state_machine.states.emplace_back();
   state_machine.states.back().stiffness = law.stiffness;
@@ -283,6 +283,9 @@ bool LinkLists::join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
       break;
     case LinkKind::kMaxwell:
       maxwell_links.push_back({a, b, law.stiffness, law.viscosity, law.start_force});
+      break;
+    case LinkKind::kBend:
+      CORDIS_ASSERT(false && "a bend joins three MATs");
       break;
   }
   return true;

@@ -18,7 +18,7 @@ class Liaisons;
 
 /// In the order of their numbers in a scene: first all linear ones, and so on.
 using engine::LinkKind;
-inline constexpr std::size_t kLinkKindCount = 3;
+inline constexpr std::size_t kLinkKindCount = 4;
 
 /// How far from each other two MATs of sets may be.
 struct Reach {
@@ -44,9 +44,10 @@ struct LinkLaw {
   bool rest_changes = false;          ///< its law has a formula in the place of the rest length
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
-  std::shared_ptr<const engine::StateMachine> state_machine;  ///< state machine for kState
+  std::shared_ptr<const engine::StateMachine>
+      state_machine;                          ///< for kState, and a bend with states
   std::vector<VariableReference> references;  ///< from its conditions, until the scene is whole
-  std::uint32_t state_machine_index = 0;      ///< kState: index in the network, once a link uses it
+  std::uint32_t state_machine_index = 0;      ///< its index in the network, once a link uses it
   Reach reach;                                ///< reach for kState
   std::string part;                           ///< its name in a parallel liaison, else empty
   std::string liaison;                        ///< the name of that it was made from, or empty

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
+#include "sim_node/engine/description/bend_limits.h"
+#include "sim_node/scene/liaisons/bend_law.h"
 #include "sim_node/scene/liaisons/law.h"
 
 namespace cordis::scene {
@@ -26,6 +29,8 @@ struct ExitSource {
   const std::vector<std::string>& states;  // their names
   AskedOutside& outside;
   Problems& problems;
+  ExpressionOwner owner = ExpressionOwner::kLink;
+  int space = 0;  // of a bend
 };
 
 /// Adds a parameter that changes, times what it is a slope over, to the law beside it.
@@ -75,7 +80,21 @@ LinkState read_physics(config::MappingReader& reader, const ParameterValues& par
 
 void read_rest(config::MappingReader& reader, const ExitSource& source, Transition& exit) {
   const Value rest = reader.optional_value("rest");
-  if (!rest.exists() || rest.text() == "keep") return;
+  if (!rest.exists()) return;
+  const bool is_of_bend = source.owner == ExpressionOwner::kBend;
+  if (is_of_bend && source.space == 3) {
+    source.problems.error(rest.place(),
+                          "in 3 dimensions a bend has no sign, so its rest stays straight",
+                          "leave 'rest' out");
+    return;
+  }
+  if (rest.text() == "keep") {
+    if (!is_of_bend) return;
+    exit.rest = engine::RestRule::kExpression;  // also into a state that has its own
+    exit.rest_length.code.push_back(
+        {engine::Operation::kQuantity, engine::Quantity::kRestAngle, 0.0, 0});
+    return;
+  }
   if (rest.text() == "here") {
     exit.rest = engine::RestRule::kHere;
     return;
@@ -85,10 +104,13 @@ void read_rest(config::MappingReader& reader, const ExitSource& source, Transiti
   if (!expression) return;
   std::uint32_t slots = 0;
   std::optional<CompiledExpression> compiled =
-      compile(*expression, what, source.parameters, slots, source.problems);
+      compile(*expression, what, source.parameters, slots, source.problems, nullptr, source.owner);
   if (expression->is_truth || slots > 0) {
-    source.problems.error(rest.place(), what + " must be a length, got a comparison",
-                          "rest: keep, here, or an expression such as rest_m + elongation_m");
+    source.problems.error(
+        rest.place(),
+        what + " must be " + (is_of_bend ? "an angle" : "a length") + ", got a comparison",
+        std::string("rest: keep, here, or an expression such as ") +
+            (is_of_bend ? "rest_rad + 0.1 * bend_rad" : "rest_m + elongation_m"));
   } else if (compiled) {
     exit.rest = engine::RestRule::kExpression;
     exit.rest_length = std::move(compiled->program);
@@ -107,8 +129,8 @@ Transition read_exit(config::MappingReader& reader, const ExitSource& source,
     const std::optional<Expression> condition = parse_expression(when, what, source.problems);
     std::optional<CompiledExpression> compiled;
     if (condition)
-      compiled =
-          compile(*condition, what, source.parameters, next_slot, source.problems, &source.outside);
+      compiled = compile(*condition, what, source.parameters, next_slot, source.problems,
+                         &source.outside, source.owner);
     if (compiled && !condition->is_truth) {
       source.problems.error(when.place(), what + " must be a condition, got a number",
                             "compare it: " + when.text() + " > 0");
@@ -159,6 +181,26 @@ std::optional<engine::Friction> read_own_friction(config::MappingReader& state,
   return read_friction(state, of_liaison, parameters, problems);
 }
 
+/// The keys of a state of a bend.
+LinkState read_bend_physics(config::MappingReader& reader, const ExitSource& source) {
+  LinkState state;
+  state.stiffness = optional_formula(reader, kBendStiffness, 0.0, Range::not_negative(),
+                                     source.parameters, source.problems);
+  state.viscosity =
+      optional_formula(reader, kBendViscosity, 0.0, Range::between(0.0, kMaxViscosity),
+                       source.parameters, source.problems);
+  const std::size_t errors_before = source.problems.error_count();
+  const double rest =
+      optional_formula(reader, kBendRest, 0.0, {-engine::kMaxRestAngle, engine::kMaxRestAngle},
+                       source.parameters, source.problems);
+  if (!reader.has(kBendRest)) return state;
+  state.rest_angle = rest;
+  if (source.space == 3 && rest != 0.0 && source.problems.error_count() == errors_before)
+    reader.error_at(kBendRest, "in 3 dimensions a bend has no sign, so the rest of " +
+                                   reader.what() + " is straight");
+  return state;
+}
+
 void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
                 engine::StateMachine& state_machine, StateMachinePlaces& places) {
   const std::string what = "state '" + entry.key + "' of " + liaison;
@@ -166,10 +208,14 @@ void read_state(const Value::Entry& entry, const std::string& liaison, const Exi
   if (!is_free_name(entry.key)) {
     source.problems.error(entry.key_place, "'" + entry.key + "' cannot be the name of a state");
   }
-  LinkState state = read_physics(reader, source.parameters, source.outside, source.problems);
+  const bool is_of_bend = source.owner == ExpressionOwner::kBend;
+  LinkState state = is_of_bend
+                        ? read_bend_physics(reader, source)
+                        : read_physics(reader, source.parameters, source.outside, source.problems);
   state.name = entry.key;
-  state.friction =
-      read_own_friction(reader, state_machine.friction, source.parameters, source.problems);
+  if (!is_of_bend)
+    state.friction =
+        read_own_friction(reader, state_machine.friction, source.parameters, source.problems);
   state.first_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   std::uint32_t next_slot = 0;
   const Value exits = reader.optional_sequence("exits");
@@ -204,6 +250,37 @@ void check_slip(const engine::StateMachine& state_machine, const StateMachinePla
   }
 }
 
+/// `states` and `start`. @param space_of_bend  dimensions; nothing: they are those of links
+void read_states(config::MappingReader& reader, std::optional<int> space_of_bend,
+                 const ParameterValues& parameters, AskedOutside& outside,
+                 engine::StateMachine& state_machine, StateMachinePlaces& places,
+                 Problems& problems) {
+  const Value states = reader.optional_mapping("states");
+  std::vector<std::string> names;
+  for (const Value::Entry& entry : states.entries()) names.push_back(entry.key);
+  if (states.exists() && names.empty())
+    reader.error_at("states", "'states' in " + reader.what() + " must not be empty");
+  if (names.size() > engine::kMaxStates) {
+    reader.error_at("states", "'states' in " + reader.what() + " has more than " +
+                                  std::to_string(engine::kMaxStates) + " states");
+  }
+  if (names.empty() || names.size() > engine::kMaxStates) {
+    reader.optional_value("start");
+    return;
+  }
+  const std::string start = reader.optional_choice("start", names.front(), names);
+  state_machine.start =
+      static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
+  const ExitSource source{parameters,
+                          names,
+                          outside,
+                          problems,
+                          space_of_bend ? ExpressionOwner::kBend : ExpressionOwner::kLink,
+                          space_of_bend.value_or(0)};
+  for (const Value::Entry& entry : states.entries())
+    read_state(entry, reader.what(), source, state_machine, places);
+}
+
 constexpr std::array<const char*, 7> kSignsOfStateMachine{
     {"states", "elasticity", "dissipation", "force_limit_n", "pulls", "pushes", "friction"}};
 
@@ -225,26 +302,16 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
     reader.optional_value("states");
     return state_machine;
   }
-  const Value states = reader.optional_mapping("states");
-  std::vector<std::string> names;
-  for (const Value::Entry& entry : states.entries()) names.push_back(entry.key);
-  if (states.exists() && names.empty())
-    reader.error_at("states", "'states' in " + reader.what() + " must not be empty");
-  if (names.size() > engine::kMaxStates) {
-    reader.error_at("states", "'states' in " + reader.what() + " has more than " +
-                                  std::to_string(engine::kMaxStates) + " states");
-  }
-  if (names.empty() || names.size() > engine::kMaxStates) {
-    reader.optional_value("start");
-    return state_machine;
-  }
-  const std::string start = reader.optional_choice("start", names.front(), names);
-  state_machine.start =
-      static_cast<std::uint32_t>(std::find(names.begin(), names.end(), start) - names.begin());
-  const ExitSource source{parameters, names, outside, problems};
-  for (const Value::Entry& entry : states.entries())
-    read_state(entry, reader.what(), source, state_machine, places);
+  read_states(reader, std::nullopt, parameters, outside, state_machine, places, problems);
   check_slip(state_machine, places, reader.what(), problems);
+  return state_machine;
+}
+
+engine::StateMachine read_bend_states(config::MappingReader& reader, int space,
+                                      const ParameterValues& parameters, AskedOutside& outside,
+                                      StateMachinePlaces& places, Problems& problems) {
+  engine::StateMachine state_machine;
+  read_states(reader, space, parameters, outside, state_machine, places, problems);
   return state_machine;
 }
 

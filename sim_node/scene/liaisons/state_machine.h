@@ -28,6 +28,13 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
                                         const ParameterValues& parameters, AskedOutside& outside,
                                         StateMachinePlaces& places, config::Problems& problems);
 
+/// Reads `states` and `start` of a liaison that resists bending, whose conditions ask for an angle. In 3 dimensions
+/// the rest of each state is straight. Whatever is wrong is a problem, as above.
+/// Precondition: the liaison has `states`.
+engine::StateMachine read_bend_states(config::MappingReader& reader, int space,
+                                      const ParameterValues& parameters, AskedOutside& outside,
+                                      StateMachinePlaces& places, config::Problems& problems);
+
 /// True if the keys of a liaison without `kind` can only be those of a state machine.
 bool looks_like_state_machine(const config::Value& liaison);
 

@@ -137,7 +137,8 @@ std::vector<std::uint32_t> Assembly::sets_called(const std::string& name) const 
 void Assembly::name_links(const std::string& name, const LinkCounts& before, bool sound,
                           const config::Place& place, const LinkLaw* law) {
   const LinkCounts after = link_counts();
-  constexpr std::array<const char*, kLinkKindCount> kEndings{".linear", ".states", ".maxwell"};
+  constexpr std::array<const char*, kLinkKindCount> kEndings{".linear", ".states", ".maxwell",
+                                                             ".bends"};
   std::size_t kinds = 0;
   for (std::size_t k = 0; k < kLinkKindCount; ++k) kinds += after[k] > before[k] ? 1 : 0;
   for (std::size_t k = 0; k < kLinkKindCount; ++k) {
@@ -162,7 +163,7 @@ void Assembly::append(const LinkLists& links, std::uint32_t first_mat) {
 LinkCounts Assembly::link_counts() const noexcept {
   const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
   return {count(scene.network.links), count(scene.network.state_links),
-          count(scene.network.maxwell_links)};
+          count(scene.network.maxwell_links), count(scene.network.bends)};
 }
 
 double Assembly::radius_of(std::uint32_t mat) const noexcept {

@@ -37,7 +37,7 @@ inline constexpr std::size_t kMaxPartValues =
 /// How many links of each kind there are, by LinkKind.
 using LinkCounts = std::array<std::uint32_t, kLinkKindCount>;
 inline std::uint32_t sum(const LinkCounts& counts) noexcept {
-  return counts[0] + counts[1] + counts[2];
+  return counts[0] + counts[1] + counts[2] + counts[3];
 }
 
 /// Turns what a drive says as a part is turned.

@@ -102,9 +102,10 @@ std::vector<Triple> triples_along(Assembly& assembly, config::MappingReader& rea
 }
 
 /// Adds a bend of a law. @return false after a problem
-bool add_bend(Assembly& assembly, const BendLaw& law, const Triple& mats,
+bool add_bend(Assembly& assembly, const LinkLaw& link, const Triple& mats,
               config::MappingReader& reader, const char* key) {
   const auto& [a, b, c] = mats;
+  const BendLaw& law = *link.bend;
   const auto called = [&](std::uint32_t mat) { return assembly.names.word_of(mat, false); };
   if (a == b || b == c || a == c) {
     reader.error_at(key, "the ends of a bending liaison must differ, got '" +
@@ -116,7 +117,15 @@ bool add_bend(Assembly& assembly, const BendLaw& law, const Triple& mats,
     return law.length.value_or((network.mats[to].position - network.mats[from].position).norm());
   };
   const engine::Bend bend{
-      a, b, c, law.stiffness, law.viscosity, law.rest_angle, length(a, b), length(b, c)};
+      a,
+      b,
+      c,
+      law.stiffness,
+      law.viscosity,
+      law.rest_angle,
+      length(a, b),
+      length(b, c),
+      link.state_machine == nullptr ? engine::Bend::kNone : link.state_machine_index};
   if (bend.length_ab <= 0.0 || bend.length_bc <= 0.0) {
     reader.error_at(key,
                     "'" + called(b) + "' and '" + called(bend.length_ab <= 0.0 ? a : c) +
@@ -125,6 +134,24 @@ bool add_bend(Assembly& assembly, const BendLaw& law, const Triple& mats,
     return false;
   }
   assembly.scene.network.bends.push_back(bend);
+  return true;
+}
+
+/// Adds a bend for each three. @return false after a problem
+bool add_bends(Assembly& assembly, const LinkEntry& entry, const std::vector<Triple>& triples,
+               const char* key) {
+  const auto first = static_cast<std::uint32_t>(assembly.scene.network.bends.size());
+  if (sum(assembly.link_counts()) + triples.size() > kMaxLinks) {
+    assembly.refuse_more(entry.reader.place_of(key),
+                         "the scene has more than " + std::to_string(kMaxLinks) + " links");
+    return false;
+  }
+  for (const Triple& triple : triples) {
+    if (!add_bend(assembly, *entry.law, triple, entry.reader, key)) return false;
+  }
+  assembly.scene.bends.push_back({assembly.names.full(entry.name), first,
+                                  static_cast<std::uint32_t>(triples.size()),
+                                  entry.reader.place()});
   return true;
 }
 
@@ -140,9 +167,6 @@ void read_bends(Assembly& assembly, LinkEntry& entry) {
       return;
     }
   }
-  if (entry.has_name)
-    reader.error_at("name",
-                    "a bending liaison takes no 'name', for it has no signals and commands");
   const bool is_along = reader.has("along");
   const char* key = is_along ? "along" : "between";
   if (is_along && reader.has("between"))
@@ -150,18 +174,15 @@ void read_bends(Assembly& assembly, LinkEntry& entry) {
   if (is_along) reader.optional_value("between");
   const std::vector<Triple> triples =
       is_along ? triples_along(assembly, reader) : triples_between(assembly, reader);
-  if (assembly.problems.error_count() != entry.errors_before) return;
-  const auto first = static_cast<std::uint32_t>(assembly.scene.network.bends.size());
-  if (sum(assembly.link_counts()) + first + triples.size() > kMaxLinks) {
-    assembly.refuse_more(reader.place_of(key),
-                         "the scene has more than " + std::to_string(kMaxLinks) + " links");
-    return;
+  const LinkCounts before = assembly.link_counts();
+  const bool sound = assembly.problems.error_count() == entry.errors_before &&
+                     add_bends(assembly, entry, triples, key);
+  if (entry.has_name) {
+    assembly.name_links(entry.name, before, sound, reader.place_of("name"), &*entry.law);
+  } else {
+    if (sound) assembly.add_group(entry.name, LinkKind::kBend, before, reader.place(), &*entry.law);
+    assembly.call_after_liaison(entry.name, LinkKind::kBend, before, sound, reader.place());
   }
-  for (const Triple& triple : triples) {
-    if (!add_bend(assembly, *entry.law->bend, triple, reader, key)) return;
-  }
-  assembly.scene.bends.push_back({assembly.names.full(entry.name), first,
-                                  static_cast<std::uint32_t>(triples.size()), reader.place()});
 }
 
 }  // namespace cordis::scene

@@ -48,6 +48,9 @@ std::string unit_ending(const std::string& unit) {
   if (unit == "m") return "_m";
   if (unit == "m/s") return "_m_per_s";
   if (unit == "N") return "_n";
+  if (unit == "rad") return "_rad";
+  if (unit == "rad/s") return "_rad_per_s";
+  if (unit == "N m") return "_n_m";
   return unit == "s" ? "_s" : "";
 }
 
@@ -155,10 +158,10 @@ class ConditionReader {
     if (is_link) {
       variable.kind = kind_of_link(first);
       variable.index = index_of_link(first);
-      owner = owner_of(variable.kind);
+      owner = owner_of(assembly_.scene.network, first);
     }
     if (!read_quantity(owner, variable)) return {};
-    return reference_->state.empty() ? value_of(variable) : number_of_state(variable.index);
+    return reference_->state.empty() ? value_of(variable) : number_of_state(variable);
   }
 
   bool read_quantity(Owner owner, Variable& variable) {
@@ -185,9 +188,12 @@ class ConditionReader {
     return false;
   }
 
-  Instruction number_of_state(std::uint32_t link) {
+  Instruction number_of_state(const Variable& link) {
     is_quiet_ = false;
-    const std::uint32_t index = assembly_.scene.network.state_links[link].state_machine;
+    const engine::NetworkDescription& network = assembly_.scene.network;
+    const std::uint32_t index = link.kind == LinkKind::kBend
+                                    ? network.bends[link.index].state_machine
+                                    : network.state_links[link.index].state_machine;
     const auto& states = pool().state_machines()[index].states;
     const auto named = std::ranges::find(states, reference_->state, &engine::LinkState::name);
     if (named == states.end()) {

@@ -9,7 +9,7 @@ namespace {
 
 using engine::VariableKind;
 
-constexpr std::array<QuantityWord, 35> kWords{{
+constexpr std::array<QuantityWord, 47> kWords{{
     {"position", Owner::kMat, VariableKind::kPosition, "m", true},
     {"velocity", Owner::kMat, VariableKind::kVelocity, "m/s", true},
     {"force", Owner::kMat, VariableKind::kForce, "N", true},
@@ -29,6 +29,18 @@ constexpr std::array<QuantityWord, 35> kWords{{
     {"bonds", Owner::kStateLink, VariableKind::kBonds, "", false},
     {"distance", Owner::kMaxwellLink, VariableKind::kDistance, "m", false},
     {"speed", Owner::kMaxwellLink, VariableKind::kElongationRate, "m/s", false},
+    {"angle", Owner::kBend, VariableKind::kAngle, "rad", false},
+    {"bend", Owner::kBend, VariableKind::kBendAngle, "rad", false},
+    {"speed", Owner::kBend, VariableKind::kAngularSpeed, "rad/s", false},
+    {"moment", Owner::kBend, VariableKind::kMoment, "N m", false},
+    {"rest_angle", Owner::kBend, VariableKind::kRestAngle, "rad", false},
+    {"angle", Owner::kStateBend, VariableKind::kAngle, "rad", false},
+    {"bend", Owner::kStateBend, VariableKind::kBendAngle, "rad", false},
+    {"speed", Owner::kStateBend, VariableKind::kAngularSpeed, "rad/s", false},
+    {"moment", Owner::kStateBend, VariableKind::kMoment, "N m", false},
+    {"rest_angle", Owner::kStateBend, VariableKind::kRestAngle, "rad", false},
+    {"state", Owner::kStateBend, VariableKind::kState, "", false},
+    {"age", Owner::kStateBend, VariableKind::kAge, "s", false},
     {"pieces", Owner::kMat, VariableKind::kPieces, "", false},
     {"center_of_mass", Owner::kBody, VariableKind::kCenterOfMass, "m", true},
     {"momentum", Owner::kBody, VariableKind::kMomentum, "kg m/s", true},
@@ -63,6 +75,10 @@ const char* name_of(Owner owner) {
       return "a link with states";
     case Owner::kMaxwellLink:
       return "a Maxwell element";
+    case Owner::kBend:
+      return "a bend";
+    case Owner::kStateBend:
+      return "a bend with states";
     case Owner::kSet:
       return "a liaison of sets";
     case Owner::kBody:
@@ -90,9 +106,20 @@ std::string list_of_quantities(Owner owner) {
   return list;
 }
 
-Owner owner_of(LinkKind kind) {
-  if (kind == LinkKind::kLinear) return Owner::kLink;
-  return kind == LinkKind::kState ? Owner::kStateLink : Owner::kMaxwellLink;
+Owner owner_of(const engine::NetworkDescription& network, std::uint32_t link) {
+  switch (kind_of_link(link)) {
+    case LinkKind::kLinear:
+      return Owner::kLink;
+    case LinkKind::kState:
+      return Owner::kStateLink;
+    case LinkKind::kMaxwell:
+      return Owner::kMaxwellLink;
+    case LinkKind::kBend:
+      break;
+  }
+  const std::uint32_t bend = index_of_link(link);
+  const bool has_states = bend < network.bends.size() && network.bends[bend].has_states();
+  return has_states ? Owner::kStateBend : Owner::kBend;
 }
 
 bool take_own_direction(const Scene& scene, engine::Variable& variable) {

@@ -10,7 +10,7 @@
 namespace cordis::scene {
 
 /// Whose a variable is.
-enum class Owner { kMat, kBody, kLink, kStateLink, kMaxwellLink, kSet, kScene };
+enum class Owner { kMat, kBody, kLink, kStateLink, kMaxwellLink, kBend, kStateBend, kSet, kScene };
 
 /// What a scene can ask for, of whom.
 struct QuantityWord {
@@ -25,8 +25,8 @@ struct QuantityWord {
 std::span<const QuantityWord> quantity_words() noexcept;
 /// What messages call an owner.
 const char* name_of(Owner owner);
-/// The owner of links of a kind.
-Owner owner_of(LinkKind kind);
+/// The owner of the quantities of a link. @param link  as names give it: link_word()
+Owner owner_of(const engine::NetworkDescription& network, std::uint32_t link);
 /// nullptr when the owner has no such quantity.
 const QuantityWord* find_quantity(Owner owner, const std::string& word);
 /// The words of MATs include those of a body.

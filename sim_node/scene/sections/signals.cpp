@@ -162,12 +162,13 @@ void read_signal_of_many(Assembly& assembly, config::MappingReader& reader, Sign
   Owner owner = Owner::kMat;
   if (group.is_of_links) {
     group.kind = kind_of_link(picked.indices.front());
-    owner = owner_of(group.kind);
+    owner = owner_of(assembly.scene.network, picked.indices.front());
   }
   bool is_of_one_kind = true;
   for (const std::uint32_t member : picked.indices) {
     is_of_one_kind = is_of_one_kind && (!group.is_of_links || kind_of_link(member) == group.kind);
     group.members.push_back(group.is_of_links ? index_of_link(member) : member);
+    if (owner == Owner::kStateBend) owner = owner_of(assembly.scene.network, member);
   }
   signal.kind = group.kind;
   if (!is_of_one_kind) reader.error_at("of", "these links are of several kinds", "pick one kind");
@@ -218,13 +219,14 @@ void read_signal_of_set(Assembly& assembly, config::MappingReader& reader, const
   signals.push_back(std::move(signal));
 }
 
-void read_count_of_links(config::MappingReader& reader, const std::string& name,
-                         const Selection& picked, std::vector<Signal>& signals) {
+void read_count_of_links(const Assembly& assembly, config::MappingReader& reader,
+                         const std::string& name, const Selection& picked,
+                         std::vector<Signal>& signals) {
   Signal signal;
   signal.name = name;
   Owner owner = Owner::kStateLink;
   for (const std::uint32_t link : picked.indices) {
-    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(kind_of_link(link));
+    if (kind_of_link(link) != LinkKind::kState) owner = owner_of(assembly.scene.network, link);
     signal.state_links.push_back(index_of_link(link));
   }
   const QuantityWord* quantity = read_quantity(reader, owner);
@@ -348,7 +350,7 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
   const bool is_link = picked && picked->kind == Named::kLinks;
   const std::string word = reader.optional_text("quantity", "");
   if (is_link && (word == "pieces" || word == "bonds")) {
-    return read_count_of_links(reader, entry.key, *picked, signals);
+    return read_count_of_links(assembly, reader, entry.key, *picked, signals);
   }
   if (picked && !is_link) {
     if (const QuantityWord* of_body = find_quantity(Owner::kBody, word)) {
@@ -374,7 +376,7 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
                         ", or take: largest, smallest, mean or sum");
   }
   Owner owner = Owner::kScene;
-  if (picked) owner = is_link ? owner_of(kind_of_link(picked->indices[0])) : Owner::kMat;
+  if (picked) owner = is_link ? owner_of(assembly.scene.network, picked->indices[0]) : Owner::kMat;
 
   Signal signal;
   signal.name = entry.key;
