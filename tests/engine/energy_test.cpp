@@ -349,6 +349,26 @@ TEST(Energy, OfAnExpressionIsCountedFromWhereItsTensionVanishes) {
       << "where it overflows is no zero";
 }
 
+// The spring ends the push a hair beyond where the mass starts, far from where the expression vanishes.
+TEST(Energy, OfAnExpressionOfOneSideCountsWhereItBegins) {
+  LinkState state;
+  state.stiffness = 1.0;
+  state.elasticity =
+      expression_law(-1.3 * one(Operation::kExp, Term(-31.0) * q(Quantity::kDistance)));
+  state.pulls = false;
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.005, Vec3(0.21, 0, 0))};
+  scene.state_machines = {Behaving().state(state).state_machine};
+  scene.state_links = {{0, 1, 0, 0.21}};
+  World world = make_world(scene);
+  run(world, 2000);
+  const Energy energy = world.energy();
+  EXPECT_GT(energy.kinetic, 1e-7);
+  EXPECT_LT(std::abs(energy.integration_error()), 0.01 * energy.kinetic);
+}
+
 TEST(Energy, OfAnExpressionWithAForceLimitIsTheIntegralOfItsTension) {
   const Term e = q(Quantity::kElongation);
   LinkState state;

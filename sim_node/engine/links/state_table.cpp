@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "node/assert.h"
+#include "sim_node/engine/laws/nearest_zero.h"
 #include "sim_node/engine/laws/quadrature.h"
 #include "sim_node/engine/laws/scalar_tension.h"
 
@@ -322,20 +324,26 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
       (state(index).pulls || state(index).pushes))
     return energy_of_half(*balls, pulls, link.distance);
   const double rest_length = link.distance - link.elongation;
-  const auto tension = [&](double distance) {
+  const auto whole = [&](double distance) {
     const LawPoint point{distance,    distance - rest_length, 0.0, link.mass_a,
                          link.mass_b, link.variables};
-    const double whole = term.stiffness * point.elongation + elastic_tension(law, point);
-    return std::min(term.max_tension, std::max(term.min_tension, whole));
+    return term.stiffness * point.elongation + elastic_tension(law, point);
+  };
+  const auto tension = [&](double distance) {
+    return std::min(term.max_tension, std::max(term.min_tension, whole(distance)));
   };
   const double begin = begin_of_integral(law, link);
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;
   double at_begin = energy_of_limited_spring(term, begin - rest_length);
   if (is_of_distance && pulls) at_begin += potential(law, {begin});  // else no force takes it away
-  // Beyond the range of a law its side ends where the spring has its rest length: the rule cannot see a corner
-  // near an end.
-  const bool passes_rest = (rest_length - begin) * (rest_length - link.distance) < 0.0;
-  const double corner = passes_rest ? rest_length : begin;
+  // A side ends where the tension vanishes, and beyond the range of a law where the spring has its rest length: the
+  // rule cannot see a corner near an end.
+  const auto passes = [&](double place) { return (place - begin) * (place - link.distance) < 0.0; };
+  double corner = passes(rest_length) ? rest_length : begin;
+  if (std::holds_alternative<Expression>(law)) {
+    const std::optional<double> zero = nearest_zero(whole, link.distance);
+    if (zero && passes(*zero)) corner = *zero;
+  }
   return at_begin + integral_over_distance(tension, begin, corner) +
          integral_over_distance(tension, corner, link.distance);
 }
