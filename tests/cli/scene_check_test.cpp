@@ -369,12 +369,12 @@ links: [{liaison: pad, between: [")"
     }
     return ports;
   };
-  EXPECT_EQ(keys("keys[0].finger.handle"), 1u) << out_;
+  EXPECT_EQ(keys("keys[0].finger"), 1u) << out_;
   EXPECT_NE(
       out_.find("\nport        16 ports keys[0].finger to keys[15].finger (" + path_ + ":6): "),
       std::string::npos)
       << out_;
-  EXPECT_EQ(keys("keys[5].finger"), 3u) << out_;
+  EXPECT_EQ(keys("keys[5].finger.handle"), 3u) << out_;
   EXPECT_NE(out_.find("\nport        5 ports keys[0].finger to keys[4].finger ("),
             std::string::npos)
       << out_;

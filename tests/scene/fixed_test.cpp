@@ -145,7 +145,7 @@ matter:
 parts: {p: {)") + body + "}}\n";
     load_scene_text(text, "t", problems);
     EXPECT_EQ(problems.error_count(), 1u) << problems.text();
-    EXPECT_NE(problems.text().find(std::string("t:7:16: error: ") + message + "\n"),
+    EXPECT_NE(problems.text().find(std::string("t:7:23: error: ") + message + "\n"),
               std::string::npos)
         << problems.text();
   }

@@ -132,36 +132,37 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
   const double begin_of_period = first_period_ ? 0.0 : -0.5;  // from the moment of x(n), in periods
-  const double at_first = begin_of_period + kG;
-  const double at_end = begin_of_period + 1.0;
-  const auto expect = [&](double share, double ahead) {
-    for (std::size_t i = 0; i < count; ++i) {
-      column(middle_, i) = column(displacement_, i);
-      if (mass_[i] > 0.0) column(middle_, i) += share * kick_at(i, ahead);
-    }
-  };
-  expect(kG, kG - 0.5);
-  find_turning(middle_, turning_);
+  for (std::size_t i = 0; i < count; ++i) {
+    column(middle_, i) = column(displacement_, i);
+    if (mass_[i] > 0.0) column(middle_, i) += kick_at(i, 0.5);
+  }
+  const double sine = find_turning(middle_, turning_);
+  const double at_first = kG * (begin_of_period + kG);
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
-                        column(drag_of_ports_, i) - (kG * at_first) * column(turning_, i);
+                        column(drag_of_ports_, i) - at_first * column(turning_, i);
   }
   matrix_.solve(first_.data());
-  expect(1.0, 0.5);
-  for (const bool is_first_guess : {true, false}) {
-    const double sine = find_turning(middle_, turning_at_end_);
+  const double at_end = kG * (begin_of_period + 1.0);
+  const auto find_second = [&](const AlignedVector<double>& turning) {
     for (std::size_t i = 0; i < count; ++i) {
       if (mass_[i] == 0.0) continue;
       const Vec3 begin = column(displacement_, i);
       column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
                                        kG * kick_at(i, 0.5)) -
-                           column(drag_of_ports_, i) - (kG * at_end) * column(turning_at_end_, i);
+                           column(drag_of_ports_, i) - at_end * column(turning, i);
     }
     matrix_.solve(second_.data());
-    if (!is_first_guess || sine < kSlowTurn) break;
-    for (std::size_t i = 0; i < count; ++i)
+  };
+  find_second(turning_);
+  turns_fast_ = sine > kSlowTurn;
+  if (turns_fast_) {
+    for (std::size_t i = 0; i < count; ++i) {
       if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
+    }
+    find_turning(middle_, turning_at_end_);
+    find_second(turning_at_end_);
   }
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = mass_[i] > 0.0
@@ -222,11 +223,17 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
               : Vec3(2.0 * kG * (1.0 - kG) * column(first_, i) + kG * kG * column(second_, i));
     }
   }
-  const double begin_of_period = first ? 0.0 : -0.5;
-  const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period + kG);
-  const double of_end = (first ? kG : 1.0) * kG * (begin_of_period + 1.0);
-  for (std::size_t i = 0; i < drag_.size(); ++i)
-    drag_[i] = of_first * turning_[i] + of_end * turning_at_end_[i];
+  // One k for u1 and u2 has no share in w, but in the mean velocity of the first period.
+  if (turns_fast_ || first) {
+    const AlignedVector<double>& turning_at_end = turns_fast_ ? turning_at_end_ : turning_;
+    const double begin_of_period = first ? 0.0 : -0.5;
+    const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period + kG);
+    const double of_end = (first ? kG : 1.0) * kG * (begin_of_period + 1.0);
+    for (std::size_t i = 0; i < drag_.size(); ++i)
+      drag_[i] = of_first * turning_[i] + of_end * turning_at_end[i];
+  } else {
+    std::fill(drag_.begin(), drag_.end(), 0.0);
+  }
   add_drag_of_links(middle_, drag_);
   const double rate = 1.0 / dt_;
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];

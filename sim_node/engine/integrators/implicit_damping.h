@@ -26,8 +26,8 @@ namespace cordis::engine {
 ///
 /// A damper pulls along its axis a at x(n), and turns meanwhile. At the moment n + c its ends part by a u + c k:
 /// c is g - 1/2 for u1 and 1/2 for u2. Ends that keep their length part by -k / 2 along, from what u2 goes
-/// across. k is that of v and the kicks for u1 and a first u2, and that of this u2 for u2. So a heavy damper that
-/// turns keeps its length. Where all turn by less than 0.01 rad the first u2 is the last.
+/// across. k is found from v and the kicks. Where a damper turns by more than 0.01 rad, u2 is solved again with
+/// the k of the first u2. So a heavy damper that turns keeps its length.
 ///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
 /// take from x(0) to the moment 1/2, with the damping force I / dt and A = (M + g dt Z)^-1 M,
@@ -117,6 +117,7 @@ class ImplicitDamping {
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   bool first_period_ = false;
+  bool turns_fast_ = false;         // a damper does: turning_at_end_ counts
   AlignedVector<double> first_;     // dt u1
   AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)
   AlignedVector<double> middle_;    // dt w
