@@ -101,16 +101,18 @@ std::string stability_text(const SceneCheck& check) {
         stability.turning.liaison ? " in which no link turns about" : "",
         is_guaranteed(stability) ? "" : " with the partners below", 100.0 * check.plan.margin());
   } else if (stability.diverges()) {
-    text =
-        fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n",
-                    check.rate_above(1.0 / (is_any_certain ? certain : stability.certified.step)));
+    const double rate =
+        check.rate_above(1.0 / (is_any_certain ? certain : stability.certified.step));
+    text = rate > scene::kHighestStepRate
+               ? "stability   UNSTABLE at every rate_hz: take less stiffness or more mass\n"
+               : fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n", rate);
   } else if (stability.uncertainty) {
     text = fmt::format(
         "stability   not certain: {}: {};\n            energy and K' + 2 Z' are watched during "
         "the run{}\n",
         scene::call_liaison(check.scene, stability.uncertainty->liaison).name,
         stability.uncertainty->why,
-        is_any_certain
+        is_any_certain && check.rate_above(1.0 / certain) <= scene::kHighestStepRate
             ? fmt::format("; a rate_hz of {:.0f} is certain", check.rate_above(1.0 / certain))
             : "");
   } else {

@@ -48,6 +48,8 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
   }
   const double per_tick = scene.gesture_rate_hz;
   const double rate = (std::floor(1.0 / (step * per_tick)) + 1.0) * per_tick;
+  if (rate > scene::kHighestStepRate)
+    return "no rate_hz is high enough: take less stiffness or more mass";
   return "a rate_hz of " + std::to_string(std::lround(rate)) +
          " is stable in every pose and state" +
          (stability.turning.liaison ? " in which no link turns about" : "");

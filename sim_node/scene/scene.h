@@ -142,6 +142,9 @@ struct Subspace {
   engine::Vec3 origin = engine::Vec3::Zero();  ///< place along the others [m]; 0 along these
 };
 
+/// No scene is stepped at a higher rate [Hz].
+inline constexpr double kHighestStepRate = 1.0e6;
+
 /// A scene as it was read.
 struct Scene {
   std::string name;

@@ -104,6 +104,19 @@ TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
   EXPECT_NE(error_.find("warning: at 40 Hz the scene is unstable"), std::string::npos) << error_;
 }
 
+TEST_F(Checked, AnUnstableOneIsToldNoRateThatNoSceneMayHave) {
+  write("40");
+  std::ifstream in(path_);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string light = "mass_kg: 0.1";
+  ASSERT_NE(text.find(light), std::string::npos) << text;
+  text.replace(text.find(light), light.size(), "mass_kg: 1.0e-12");
+  std::ofstream(path_) << text;
+  EXPECT_EQ(run({}), kBadInput);
+  EXPECT_NE(out_.find("UNSTABLE at every rate_hz: take less stiffness"), std::string::npos) << out_;
+  EXPECT_NE(error_.find("hint: no rate_hz is high enough"), std::string::npos) << error_;
+}
+
 TEST_F(Checked, AnUnstableMediumIsRefusedAtTheMassThatItDampsTooMuch) {
   std::ofstream(path_) << R"(cordis: 1
 name: medium

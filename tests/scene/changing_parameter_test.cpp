@@ -132,7 +132,7 @@ matter:
 links:
   - {liaison: l, between: [f, m]}
 )",
-                 "a MAT has no quantity 'positon_y_m' for a condition",
+                 "a MAT has no quantity 'positon_y_m' that others may ask for",
                  "did you mean 'position_y_m'?"},
         BadScene{kHead2,
                  R"(liaisons:

@@ -147,7 +147,7 @@ class ConditionReader {
     const bool is_link = picked->kind == Named::kLinks;
     const std::uint32_t first = picked->indices.front();
     if (picked->count() != 1) {
-      fail("a condition asks for one MAT or one link, and '" + reference_->owner + "' has " +
+      fail("one MAT or one link may be asked for, and '" + reference_->owner + "' has " +
                std::to_string(picked->count()),
            "pick one: " + assembly_.names.word_of(first, is_link) + "." + reference_->word);
       return {};
@@ -171,7 +171,7 @@ class ConditionReader {
       std::vector<std::string> texts;
       for (const ConditionWord& word : words) texts.push_back(word.text);
       fail(std::string(name_of(owner)) + " has no quantity '" + reference_->word +
-               "' for a condition",
+               "' that others may ask for",
            hint_of(reference_->word, texts));
       return false;
     }
@@ -250,7 +250,7 @@ class ConditionReader {
     if (!problems.has_errors()) return std::nullopt;  // of what has a problem of its own
     const std::string& name = reference_->owner;
     if (assembly_.named_sets.contains(scope_ + name) || assembly_.named_sets.contains(name)) {
-      fail("'" + name + "' is a liaison of sets, and a condition asks for one MAT or one link", "");
+      fail("'" + name + "' is a liaison of sets, and one MAT or one link may be asked for", "");
       return std::nullopt;
     }
     const config::Problem& problem = problems.all().front();

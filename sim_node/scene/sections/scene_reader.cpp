@@ -23,7 +23,6 @@ namespace {
 using config::Range;
 using config::Value;
 
-constexpr double kHighestStepRate = 1.0e6;
 constexpr double kHighestGestureRate = 1.0e5;
 constexpr double kHighestFrameRate = 1.0e3;
 constexpr long kMaxSettlingSteps = 100'000'000;
