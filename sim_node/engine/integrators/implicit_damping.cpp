@@ -131,20 +131,19 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     const Vec3 change = now - Vec3::Map(before + 4 * mat);
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
-  const double begin_of_period = first_period_ ? 0.0 : -0.5;  // from the moment of x(n), in periods
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = column(displacement_, i);
     if (mass_[i] > 0.0) column(middle_, i) += kick_at(i, 0.5);
   }
   const double sine = find_turning(middle_, turning_);
-  const double at_first = kG * (begin_of_period + kG);
+  const double at_first = kG * (begin_of_period() + kG);
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
                         column(drag_of_ports_, i) - at_first * column(turning_, i);
   }
   matrix_.solve(first_.data());
-  const double at_end = kG * (begin_of_period + 1.0);
+  const double at_end = kG * (begin_of_period() + 1.0);
   const auto find_second = [&](const AlignedVector<double>& turning) {
     for (std::size_t i = 0; i < count; ++i) {
       if (mass_[i] == 0.0) continue;
@@ -226,9 +225,8 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
   // One k for u1 and u2 has no share in w, but in the mean velocity of the first period.
   if (turns_fast_ || first) {
     const AlignedVector<double>& turning_at_end = turns_fast_ ? turning_at_end_ : turning_;
-    const double begin_of_period = first ? 0.0 : -0.5;
-    const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period + kG);
-    const double of_end = (first ? kG : 1.0) * kG * (begin_of_period + 1.0);
+    const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period() + kG);
+    const double of_end = (first ? kG : 1.0) * kG * (begin_of_period() + 1.0);
     for (std::size_t i = 0; i < drag_.size(); ++i)
       drag_[i] = of_first * turning_[i] + of_end * turning_at_end[i];
   } else {

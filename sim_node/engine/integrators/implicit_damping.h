@@ -96,6 +96,8 @@ class ImplicitDamping {
   };
 
   void find_axes(const MatArray& mats) noexcept;
+  /// From the moment of x(n), in periods.
+  double begin_of_period() const noexcept { return first_period_ ? 0.0 : -0.5; }
   double find_turning(const AlignedVector<double>& displacement,
                       AlignedVector<double>& turning) const noexcept;
   void find_carried_forces(const MatArray& mats) noexcept;

@@ -290,10 +290,14 @@ double StateTable::stored_energy(StateIndex index, const LawPoint& link) const n
   return linear + potential(state(index).elasticity, clamped);
 }
 
+double StateTable::whole_tension(StateIndex index, const LawPoint& link) const noexcept {
+  return content_->terms[index].stiffness * link.elongation +
+         elastic_tension(state(index).elasticity, link);
+}
+
 double StateTable::elastic_tension_of(StateIndex index, const LawPoint& link) const noexcept {
   const StateTerm& term = content_->terms[index];
-  const double whole =
-      term.stiffness * link.elongation + elastic_tension(state(index).elasticity, link);
+  const double whole = whole_tension(index, link);
   if (!term.limits_elastic) return whole;
   return std::min(term.max_tension, std::max(term.min_tension, whole));
 }
@@ -324,13 +328,13 @@ double StateTable::limited_energy(StateIndex index, const LawPoint& link) const 
       (state(index).pulls || state(index).pushes))
     return energy_of_half(*balls, pulls, link.distance);
   const double rest_length = link.distance - link.elongation;
-  const auto whole = [&](double distance) {
-    const LawPoint point{distance,    distance - rest_length, 0.0, link.mass_a,
-                         link.mass_b, link.variables};
-    return term.stiffness * point.elongation + elastic_tension(law, point);
+  const auto point_at = [&](double distance) {
+    return LawPoint{distance,    distance - rest_length, 0.0, link.mass_a,
+                    link.mass_b, link.variables};
   };
+  const auto whole = [&](double distance) { return whole_tension(index, point_at(distance)); };
   const auto tension = [&](double distance) {
-    return std::min(term.max_tension, std::max(term.min_tension, whole(distance)));
+    return elastic_tension_of(index, point_at(distance));
   };
   const double begin = begin_of_integral(law, link);
   const bool is_of_distance = argument_of(law) == LawArgument::kDistance;

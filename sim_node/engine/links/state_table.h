@@ -81,7 +81,9 @@ class StateTable {
  private:
   double stored_energy(StateIndex index, const LawPoint& link) const noexcept;
   double limited_energy(StateIndex index, const LawPoint& link) const noexcept;
-  /// The part of the tension that stores energy [N]. Precondition: the law of the state is an expression.
+  /// The tension that stores energy, without the limits of the state [N].
+  double whole_tension(StateIndex index, const LawPoint& link) const noexcept;
+  /// Likewise within them [N].
   double elastic_tension_of(StateIndex index, const LawPoint& link) const noexcept;
 
   struct Content;

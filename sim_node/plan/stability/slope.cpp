@@ -49,18 +49,24 @@ bool is_jump(const engine::Law& law) {
   return balls != nullptr && balls->cutoff > 0.0 && balls->cutoff < kWell * balls->diameter;
 }
 
-/// Adds the slopes of an expression over the distances and speeds that can be reached.
-/// @param speed  of its ends, either way [m/s]
-void add_expression(const engine::Program& program, const Stretch& stretch, double rest_length,
-                    bool turns, double speed, const Reach& reach, Slope& slope) {
-  constexpr double kFar = 1e9;  // [m], [m/s]
-  constexpr double kSame = 1.05;
+/// The distances and speeds that can be reached. @param speed  of the ends, either way [m/s]
+LinkBox box_within(const Stretch& stretch, double rest_length, double speed, const Reach& reach) {
   LinkBox box{{rest_length - stretch.shorter, rest_length + stretch.longer},
               {-speed, speed},
               rest_length,
               reach.mass_a,
               reach.mass_b};
   box.variables = reach.variables.get();
+  return box;
+}
+
+/// Adds the slopes of an expression over the distances and speeds that can be reached.
+/// @param speed  of its ends, either way [m/s]
+void add_expression(const engine::Program& program, const Stretch& stretch, double rest_length,
+                    bool turns, double speed, const Reach& reach, Slope& slope) {
+  constexpr double kFar = 1e9;  // [m], [m/s]
+  constexpr double kSame = 1.05;
+  LinkBox box = box_within(stretch, rest_length, speed, reach);
   box.bisections = reach.bisections;
   if (turns) box.distance.low = std::max(box.distance.low, 0.0);
   const LinkBox reached = box;
@@ -186,12 +192,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
     slope.bounded = slope.bounded && law.bounded;
   }
   if (elastic != nullptr && slope.uncertainty == nullptr && asks_for_variable(state.elasticity)) {
-    LinkBox box{{rest_length - stretch.shorter, rest_length + stretch.longer},
-                {-speed, speed},
-                rest_length,
-                reach.mass_a,
-                reach.mass_b};
-    box.variables = reach.variables.get();
+    const LinkBox box = box_within(stretch, rest_length, speed, reach);
     if (state.stiffness + flattest_slope(elastic->program, box, slope.stiffness) < 0.0)
       slope.uncertainty = kMayDriveApart;
   }
