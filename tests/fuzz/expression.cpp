@@ -10,7 +10,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "node/config/yaml_reader.h"
 #include "sim_node/engine/expressions/program.h"
@@ -50,7 +52,9 @@ bool is_same(double a, double b) {
 
 /// A program for one link has the bits that the kernel finds. A program with edges compares with a
 /// step before, which only the kernel remembers.
-void evaluate(const engine::Program& program) {
+void evaluate(const engine::Program& program, std::size_t variable_count) {
+  std::vector<double> variables(variable_count);
+  for (std::size_t k = 0; k < variable_count; ++k) variables[k] = kValues[k % kValues.size()];
   std::array<double, engine::kMaxSlots> memory{};
   memory.fill(engine::kNoValue);
   for (std::size_t row = 0; row < kRows; ++row) {
@@ -62,19 +66,21 @@ void evaluate(const engine::Program& program) {
       before[k] = value_at(k, row + 1);
       quantity[k] = &now[k];
     }
-    static_cast<void>(engine::value_of(program, now, &before));
-    const double value = engine::value_of(program, now);
+    static_cast<void>(engine::value_of(program, now, &before, 0.0, variables.data()));
+    const double value = engine::value_of(program, now, nullptr, 0.0, variables.data());
     engine::ProgramLoop<engine::ScalarLanes> loop;
-    const double found = *loop.evaluate({program.code.data(), program.code.size()},
-                                        {quantity.data(), memory.data()}, 1);
+    const double found =
+        *loop.evaluate({program.code.data(), program.code.size(), variables.data()},
+                       {quantity.data(), memory.data()}, 1);
     if (!engine::has_edge(program) && !is_same(value, found)) std::abort();
   }
 }
 
 /// What the compiler lets pass, the engine takes.
-void check(const engine::Program& program) {
-  engine::check_program(program, "program");
-  evaluate(program);
+/// @param variable_count  how many variables outside the link it may ask for
+void check(const engine::Program& program, std::size_t variable_count = 0) {
+  engine::check_program(program, "program", variable_count);
+  evaluate(program, variable_count);
 }
 
 }  // namespace
@@ -97,7 +103,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::check(compiled->program);
     }
   }
-  if (const auto law = scene::compile_law(text, "law", parameters, problems)) fuzz::check(*law);
+  const std::set<std::string> signals{"loudness"};
+  std::vector<scene::VariableReference> references;
+  scene::AskedOutside outside{signals, references};
+  if (const auto law = scene::compile_law(text, "law", parameters, outside, problems)) {
+    fuzz::check(*law, references.size());
+  }
   const double number = scene::read_formula(text, "formula", 1.0, config::Range::between(-8.0, 8.0),
                                             parameters, problems);
   if (!(number >= -8.0 && number <= 8.0)) std::abort();
