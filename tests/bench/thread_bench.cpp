@@ -1,4 +1,5 @@
 // tests/bench/thread_bench.cpp -- a step that threads share, beside a world of its own on each.
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <thread>
@@ -17,8 +18,14 @@ namespace {
 using cordis::bench::melt;
 using cordis::bench::pack;
 using cordis::cli::square_net;
+using cordis::engine::Link;
 using cordis::engine::Network;
+using cordis::engine::NetworkDescription;
+using cordis::engine::Operation;
+using cordis::engine::Quantity;
+using cordis::engine::StateMachine;
 using cordis::engine::ThreadTeam;
+using cordis::engine::Transition;
 using cordis::engine::World;
 
 /// A network that is stepped, and what its time is divided by.
@@ -32,6 +39,38 @@ Measured net(const benchmark::State& state) {
       std::make_shared<const Network>(square_net(3, static_cast<std::uint32_t>(state.range(0))));
   const std::size_t links = network->link_count();
   return {std::move(network), links};
+}
+
+/// A net whose links have two states, the second of which none enters.
+Measured net_of_states(const benchmark::State& state) {
+  NetworkDescription scene = square_net(3, static_cast<std::uint32_t>(state.range(0)));
+  StateMachine machine;
+  machine.states.resize(2);
+  machine.states[0].stiffness = scene.links.front().stiffness;
+  machine.states[0].viscosity = scene.links.front().viscosity;
+  machine.states[0].last_exit = 1;
+  machine.states[1].first_exit = machine.states[1].last_exit = 1;
+  Transition breaks;
+  breaks.when.code = {{Operation::kQuantity, Quantity::kElongation, 0.0, 0},
+                      {Operation::kConstant, Quantity::kDistance, 1.0, 0},
+                      {Operation::kGreater, Quantity::kDistance, 0.0, 0}};
+  breaks.target = 1;
+  machine.exits = {breaks};
+  scene.state_machines = {machine};
+  for (const Link& link : scene.links)
+    scene.state_links.push_back({link.mat_a, link.mat_b, 0, link.rest_length});
+  scene.links.clear();
+  const std::size_t links = scene.state_links.size();
+  return {std::make_shared<const Network>(std::move(scene)), links};
+}
+
+Measured net_of_maxwell_elements(const benchmark::State& state) {
+  NetworkDescription scene = square_net(3, static_cast<std::uint32_t>(state.range(0)));
+  for (const Link& link : scene.links)
+    scene.maxwell_links.push_back({link.mat_a, link.mat_b, link.stiffness, 1.0, 0.0});
+  scene.links.clear();
+  const std::size_t links = scene.maxwell_links.size();
+  return {std::make_shared<const Network>(std::move(scene)), links};
 }
 
 Measured balls_of_a_melt(const benchmark::State& state) {
@@ -109,7 +148,9 @@ void register_pairs(const std::string& what, const char* size, const std::vector
 }
 
 const bool kRegistered = [] {
-  register_pairs<net>("net", "side", {110, 160, 320, 1000});   // 24,000 links to 2 million
+  register_pairs<net>("net", "side", {110, 160, 320, 1000});  // 24,000 links to 2 million
+  register_pairs<net_of_states>("net_of_states", "side", {110, 160, 320});
+  register_pairs<net_of_maxwell_elements>("net_of_maxwell_elements", "side", {110, 160, 320});
   register_pairs<balls_of_a_melt>("melt", "cells", {11, 20});  // 5,324 and 32,000 balls
   register_pairs<balls_of_a_pack<3>>("pack_3d", "balls", {5000, 32000, 200000});
   register_pairs<balls_of_a_pack<2>>("pack_2d", "balls", {5000, 32000, 200000});

@@ -139,6 +139,12 @@ class Archive {
     if (!hashes()) return;
     for (std::size_t i = 0; i < row_count; ++i) (add_to_hash(columns[i]), ...);
   }
+  /// Some rows of columns, row by row.
+  template <class Rows, class... Columns>
+  void hash_rows_at(const Rows& rows, const Columns&... columns) noexcept {
+    if (!hashes()) return;
+    for (const auto row : rows) (add_to_hash(columns[row]), ...);
+  }
 
  private:
   enum class Task : std::uint8_t { kSave, kMeasure, kCheck, kRestore, kHash };

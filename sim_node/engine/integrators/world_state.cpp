@@ -76,9 +76,9 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       links(stepped_links(description(), mats.layout(), blocks)),
       vector_springs(description(), SpringDamperArray::Kind::kVectorSpring, mats.layout(), blocks),
       table(make_table(description().state_machines)),
-      state_links(description(), table),
-      maxwell_links(description()),
-      bends(description(), table),
+      state_links(description(), table, blocks),
+      maxwell_links(description(), blocks),
+      bends(description(), table, blocks),
       sets(description(), table, pair_kernel(width)),
       log(table,
           std::max(kMinEventRoom, description().state_links.size() + description().bends.size())),
@@ -122,7 +122,7 @@ void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   vector_springs.add_forces(kernel, columns, *team);
   state_links.add_forces_before_start(state_machines, table, columns);
   maxwell_links.add_held_forces(state_machines, columns);
-  bends.add_forces(columns);
+  bends.add_forces(columns, *team);
   sets.add_forces(pair_step(true), columns, team.get());
 }
 
@@ -173,7 +173,7 @@ StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
 
 StepEnergy WorldState::add_maxwell_forces(const ForceColumns& columns) noexcept {
   return step_count == 0 ? maxwell_links.add_first_forces(state_machines, columns)
-                         : maxwell_links.add_forces(state_machines, columns);
+                         : maxwell_links.add_forces(state_machines, columns, *team);
 }
 
 StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
@@ -193,10 +193,10 @@ void WorldState::add_forces_at_half_step(StepEnergy& energy) noexcept {
 StepEnergy WorldState::add_explicit_forces(const ForceColumns& columns) noexcept {
   StepEnergy work;
   if (!state_links.empty()) {
-    work += state_links.add_forces(state_machines, table, columns, step_count, log);
+    work += state_links.add_forces(state_machines, table, columns, step_count, log, *team);
   }
   work += add_maxwell_forces(columns);
-  work += bends.add_forces(state_machines, table, columns, step_count, log);
+  work += bends.add_forces(state_machines, table, columns, step_count, log, *team);
   work += add_set_forces(columns);
   return work;
 }
@@ -228,13 +228,13 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
   // Half the work of the viscous forces of this step is returned: those of the last are forgotten.
   if (!state_links.empty()) {
     state_links.forget_viscous_forces();
-    of_links += state_links.add_forces(state_machines, table, extrapolated, step_count, log);
+    of_links += state_links.add_forces(state_machines, table, extrapolated, step_count, log, *team);
   }
   if (step_count == 0) maxwell_links.go_back(mats);
   const double taken = add_maxwell_forces(as_it_moved).dissipated;
   if (step_count > 0) energy.dissipated += taken;  // the account begins at the moment of step 0
   bends.forget_viscous_forces();
-  of_links += bends.add_forces(state_machines, table, extrapolated, step_count, log);
+  of_links += bends.add_forces(state_machines, table, extrapolated, step_count, log, *team);
   of_links += of_last_sets;
   of_links += add_set_forces(extrapolated);
   if (freezing) freezing->restore_forces(mats);
@@ -332,8 +332,8 @@ void WorldState::restore(const Snapshot& snapshot) {
 
 void WorldState::restore_with_table(const Snapshot& snapshot) {
   StateTable table_of_snapshot = make_table(state_machines_of(snapshot, description()));
-  StateLinkArray links_of_snapshot(description(), table_of_snapshot);
-  BendArray bends_of_snapshot(description(), table_of_snapshot);
+  StateLinkArray links_of_snapshot(description(), table_of_snapshot, blocks);
+  BendArray bends_of_snapshot(description(), table_of_snapshot, blocks);
   std::vector<double> own_sets;
   Archive saving = Archive::saving(own_sets);
   sets.serialize(saving, table);

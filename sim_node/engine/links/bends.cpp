@@ -20,13 +20,20 @@ void add(double* columns, std::uint32_t mat, const Vec3& force) noexcept {
 
 }  // namespace
 
-BendArray::BendArray(const NetworkDescription& description, const StateTable& table)
+BendArray::BendArray(const NetworkDescription& description, const StateTable& table,
+                     const MatBlocks& blocks)
     : dimension_(description.dimension),
       dt_(description.step),
       states_(description, table),
+      groups_(blocks),
+      works_(blocks.group_count()),
       viscous_moment_(3 * description.bends.size(), 0.0) {
   rows_.reserve(description.bends.size());
+  std::vector<std::size_t> group;
+  group.reserve(description.bends.size());
   for (const Bend& bend : description.bends) {
+    const auto [low, high] = std::minmax({bend.mat_a, bend.mat_b, bend.mat_c});
+    group.push_back(blocks.group_of(low, high));
     std::uint32_t state_row = kNoRow;
     if (bend.has_states()) {
       state_row = static_cast<std::uint32_t>(bend_of_row_.size());
@@ -36,7 +43,9 @@ BendArray::BendArray(const NetworkDescription& description, const StateTable& ta
     rows_.push_back({bend.mat_a, bend.mat_b, bend.mat_c, state_row, bend.stiffness,
                      bend.viscosity / description.step, BendShape(bend, description.dimension)});
   }
+  order_ = by_group(group, blocks.group_count());
   changes_.reserve(bend_of_row_.size());
+  change_of_row_.assign(bend_of_row_.size(), kNoChange);
   adopt(table);
 }
 
@@ -91,18 +100,22 @@ void BendArray::change_states(const StateKernel& kernel, const StateTable& table
   }
   states_.step(kernel, table, step, [&](const BendChange& change) {
     Row& row = rows_[bend_of_row_[change.row]];
+    change_of_row_[change.row] = static_cast<std::uint32_t>(changes_.size());
     changes_.push_back({change, step, row.stiffness, row.shape});
     put_state(table, row);
   });
 }
 
 StepEnergy BendArray::add_forces(const StateKernel& kernel, const StateTable& table,
-                                 const ForceColumns& columns, std::uint64_t step,
-                                 EventLog& log) noexcept {
-  if (bend_of_row_.empty()) return add_forces(columns);
+                                 const ForceColumns& columns, std::uint64_t step, EventLog& log,
+                                 ThreadTeam& team) noexcept {
+  if (bend_of_row_.empty()) return add_forces(columns, team);
   change_states(kernel, table, columns, step);
-  StepEnergy work = add_forces(columns);
-  for (const Change& change : changes_) work.switching += enter(table, change, columns, log);
+  StepEnergy work = add_forces(columns, team);
+  for (const Change& change : changes_) {
+    work.switching += enter(table, change, columns, log);
+    change_of_row_[change.of_states.row] = kNoChange;
+  }
   changes_.clear();
   return work;
 }
@@ -128,46 +141,60 @@ double BendArray::enter(const StateTable& table, const Change& change, const For
   return energy;
 }
 
-StepEnergy BendArray::add_forces(const ForceColumns& columns) noexcept {
-  CORDIS_ASSERT(rows_.empty() || columns.axis_stride == 1);
+/// The change of a bend in this step; nullptr: none.
+const BendArray::Change* BendArray::change_of(const Row& row) const noexcept {
+  if (row.state_row == kNoRow) return nullptr;
+  const std::uint32_t change = change_of_row_[row.state_row];
+  return change == kNoChange ? nullptr : &changes_[change];
+}
+
+StepEnergy BendArray::add_bend(std::size_t bend_index, const ForceColumns& columns) noexcept {
+  const Row& row = rows_[bend_index];
+  const auto bend_in = [&](const BendShape& shape, const double* from) {
+    return shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
+  };
+  const Vec3 bend = bend_in(row.shape, columns.position);
+  const Vec3 before = bend_in(row.shape, columns.delayed);
+  const Vec3 moved = bend - before;
+  const bool has_states = row.state_row != kNoRow;
+  Vec3 moment = row.stiffness * bend;
   StepEnergy work;
-  auto next_change = changes_.begin();
-  for (std::size_t l = 0; l < rows_.size(); ++l) {
-    const Row& row = rows_[l];
-    const auto bend_in = [&](const BendShape& shape, const double* from) {
-      return shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
-    };
-    const Vec3 bend = bend_in(row.shape, columns.position);
-    const Vec3 before = bend_in(row.shape, columns.delayed);
-    const Vec3 moved = bend - before;
-    const bool has_states = row.state_row != kNoRow;
-    const bool is_new =
-        has_states && next_change != changes_.end() && next_change->of_states.row == row.state_row;
-    Vec3 moment = row.stiffness * bend;
-    if (is_new) {
-      // The force of the last step, of the law before the change, has done the first half of the way.
-      const Vec3 was = bend_in(next_change->shape, columns.delayed);
-      const Vec3 moved_then = bend_in(next_change->shape, columns.position) - was;
-      work.elastic += 0.5 * (dot(moment, moved) + next_change->stiffness * dot(was, moved_then));
-      work.dissipated += 0.5 * dot(last_viscous_moment(l), moved_then);
-      std::fill_n(viscous_moment_.data() + 3 * l, 3, 0.0);
-      ++next_change;
-    } else {
-      work.elastic += 0.5 * row.stiffness * dot(bend + before, moved);
-      if (row.viscosity_over_dt > 0.0 || has_states) {
-        const Vec3 viscous = viscous_moment(row, bend, moved);
-        work.dissipated += 0.5 * dot(viscous + last_viscous_moment(l), moved);
-        std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * l);
-        moment += viscous;
-      }
+  if (const Change* const change = change_of(row)) {
+    // The force of the last step, of the law before the change, has done the first half of the way.
+    const Vec3 was = bend_in(change->shape, columns.delayed);
+    const Vec3 moved_then = bend_in(change->shape, columns.position) - was;
+    work.elastic = 0.5 * (dot(moment, moved) + change->stiffness * dot(was, moved_then));
+    work.dissipated = 0.5 * dot(last_viscous_moment(bend_index), moved_then);
+    std::fill_n(viscous_moment_.data() + 3 * bend_index, 3, 0.0);
+  } else {
+    work.elastic = 0.5 * row.stiffness * dot(bend + before, moved);
+    if (row.viscosity_over_dt > 0.0 || has_states) {
+      const Vec3 viscous = viscous_moment(row, bend, moved);
+      work.dissipated = 0.5 * dot(viscous + last_viscous_moment(bend_index), moved);
+      std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * bend_index);
+      moment += viscous;
     }
-    if (has_states) {
-      states_.set_moment(row.state_row, moment_about_middle(with_states_[row.state_row], dimension_,
-                                                            sides_of(row, columns), moment));
-    }
-    add_moment(row, moment, columns);
   }
+  if (has_states) {
+    states_.set_moment(row.state_row, moment_about_middle(with_states_[row.state_row], dimension_,
+                                                          sides_of(row, columns), moment));
+  }
+  add_moment(row, moment, columns);
   return work;
+}
+
+StepEnergy BendArray::add_forces(const ForceColumns& columns, ThreadTeam& team) noexcept {
+  if (rows_.empty()) return {};
+  CORDIS_ASSERT(columns.axis_stride == 1);
+  groups_.run(team, [&](std::size_t group) noexcept {
+    StepEnergy work;
+    for (std::size_t place = order_.first[group]; place < order_.first[group + 1]; ++place)
+      work += add_bend(order_.links[place], columns);
+    works_[group] = work;
+  });
+  StepEnergy sum;
+  for (const StepEnergy& work : works_) sum += work;
+  return sum;
 }
 
 StepEnergy BendArray::work_since_last_call(const MatArray& mats) const noexcept {

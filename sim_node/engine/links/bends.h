@@ -9,6 +9,7 @@
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/engine/links/bend_states.h"
 #include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/links/link_groups.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/step_kernel.h"
@@ -19,15 +20,18 @@ namespace cordis::engine {
 /// width. Precondition of all calls: where there are bends, the MATs are stored by MAT.
 class BendArray {
  public:
-  BendArray(const NetworkDescription& description, const StateTable& table);
+  BendArray(const NetworkDescription& description, const StateTable& table,
+            const MatBlocks& blocks);
 
-  /// Adds the forces of every bend to its three MATs, in order, in their present states.
+  /// Adds the forces of every bend to its three MATs in their present states, in the order of
+  /// SpringDamperArray::add_forces, shared likewise.
   /// @return works [J] as SpringDamperArray::add_forces counts them in 3 dimensions
   /// Real time: O(bends), no allocation.
-  StepEnergy add_forces(const ForceColumns& columns) noexcept;
+  StepEnergy add_forces(const ForceColumns& columns, ThreadTeam& team) noexcept;
   /// Changes the states of a step first, and enters that in the log.
   StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
-                        const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
+                        const ForceColumns& columns, std::uint64_t step, EventLog& log,
+                        ThreadTeam& team) noexcept;
   /// Work of the forces of the last call up to the present positions [J]. Real time: O(bends), no allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
   /// Energy where the forces of the last call were computed [J]. Real time: O(bends), no allocation.
@@ -70,6 +74,7 @@ class BendArray {
     double viscosity_over_dt;  // [N m/rad]
     BendShape shape;
   };
+  static constexpr std::uint32_t kNoChange = 0xffffffffU;
   /// A change of state of this step, and the law before it.
   struct Change {
     BendChange of_states;
@@ -82,6 +87,8 @@ class BendArray {
   /// Enters a change in the log. @return energy that it brought into the bend [J]
   double enter(const StateTable& table, const Change& change, const ForceColumns& columns,
                EventLog& log) noexcept;
+  StepEnergy add_bend(std::size_t bend, const ForceColumns& columns) noexcept;
+  const Change* change_of(const Row& row) const noexcept;
   static BendSides sides_of(const Row& row, const ForceColumns& columns) noexcept;
   void put_state(const StateTable& table, Row& row) noexcept;
   void add_moment(const Row& row, const Vec3& moment, const ForceColumns& columns) const noexcept;
@@ -94,7 +101,11 @@ class BendArray {
   std::vector<Bend> with_states_;           // by row of states_
   std::vector<std::uint32_t> bend_of_row_;  // likewise
   BendStates states_;
-  std::vector<Change> changes_;           // of this step, in the order of the rows
+  std::vector<Change> changes_;               // of this step, in the order of the rows of states_
+  std::vector<std::uint32_t> change_of_row_;  // of states_: place in changes_, or kNoChange
+  LinkGroups groups_;
+  GroupedOrder order_;                    // of the bends
+  std::vector<StepEnergy> works_;         // of each group in this step
   AlignedVector<double> viscous_moment_;  // of the last call, 3 per row [N m]
 };
 

@@ -17,40 +17,53 @@ double share_of_decay(double x) noexcept {
   return share;
 }
 
-MaxwellArray::MaxwellArray(const NetworkDescription& description)
+MaxwellArray::MaxwellArray(const NetworkDescription& description, const MatBlocks& blocks)
     : is_1d_(description.dimension == 1),
-      link_count_(description.maxwell_links.size()),
-      column_a_(padded(link_count_, kStateBatch), 0U),
-      column_b_(column_a_.size(), 0U),
-      velocity_retention_(column_a_.size(), 0.0),
-      gain_(column_a_.size(), 0.0),
-      compliance_(column_a_.size(), 0.0),
-      tension_(column_a_.size(), 0.0),
-      factor_(column_a_.size(), 0.0) {
-  for (std::size_t l = 0; l < link_count_; ++l) {
-    const MaxwellLink& link = description.maxwell_links[l];
+      rows_(description.maxwell_links, blocks, kStateBatch),
+      groups_(blocks),
+      column_a_(rows_.count(), 0U),
+      column_b_(rows_.count(), 0U),
+      velocity_retention_(rows_.count(), 0.0),
+      gain_(rows_.count(), 0.0),
+      compliance_(rows_.count(), 0.0),
+      tension_(rows_.count(), 0.0),
+      factor_(rows_.count(), 0.0) {
+  auto padding_mat = rows_.padding_mats.begin();
+  for (std::size_t r = 0; r < rows_.count(); ++r) {
+    if (rows_.is_padding(r)) {
+      column_a_[r] = column_b_[r] = 4 * *padding_mat++;
+      continue;
+    }
+    const MaxwellLink& link = description.maxwell_links[rows_.link_of_row[r]];
     const double share = share_of_decay(link.stiffness * description.step / link.viscosity);
-    column_a_[l] = 4 * link.mat_a;
-    column_b_[l] = 4 * link.mat_b;
-    velocity_retention_[l] = 1.0 - share;
-    gain_[l] = link.viscosity / description.step * share;
-    compliance_[l] = 1.0 / link.stiffness;
-    tension_[l] = link.start_force;
-  }
-  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
-    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
+    column_a_[r] = 4 * link.mat_a;
+    column_b_[r] = 4 * link.mat_b;
+    velocity_retention_[r] = 1.0 - share;
+    gain_[r] = link.viscosity / description.step * share;
+    compliance_[r] = 1.0 / link.stiffness;
+    tension_[r] = link.start_force;
   }
 }
 
-StepEnergy MaxwellArray::add_forces(const StateKernel& kernel,
-                                    const ForceColumns& columns) noexcept {
-  if (link_count_ == 0) return {};
-  const MaxwellRows rows{
-      column_a_.size(), column_a_.data(),   column_b_.data(), velocity_retention_.data(),
-      gain_.data(),     compliance_.data(), tension_.data(),  factor_.data()};
-  LinkWork work;
-  (is_1d_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
-  return half_of(work);
+MaxwellRows MaxwellArray::rows(std::size_t first, std::size_t count) noexcept {
+  return {count,
+          column_a_.data() + first,
+          column_b_.data() + first,
+          velocity_retention_.data() + first,
+          gain_.data() + first,
+          compliance_.data() + first,
+          tension_.data() + first,
+          factor_.data() + first};
+}
+
+StepEnergy MaxwellArray::add_forces(const StateKernel& kernel, const ForceColumns& columns,
+                                    ThreadTeam& team) noexcept {
+  if (rows_.count() == 0) return {};
+  const AddMaxwellForces add = is_1d_ ? kernel.maxwell_1d : kernel.maxwell_3d;
+  return half_of(groups_.add(team, [&](std::size_t group, LinkWork& work) noexcept {
+    if (rows_.count(group) == 0) return;
+    add(rows(rows_.first[group], rows_.count(group)), columns, work);
+  }));
 }
 
 StepEnergy MaxwellArray::add_undecayed(const StateKernel& kernel, const ForceColumns& columns,
@@ -59,15 +72,10 @@ StepEnergy MaxwellArray::add_undecayed(const StateKernel& kernel, const ForceCol
   alignas(64) static constexpr double kNoGain[kStateBatch] = {};
   LinkWork work;
   for (std::size_t l = 0; l < column_a_.size(); l += kStateBatch) {
-    const MaxwellRows rows{kStateBatch,
-                           column_a_.data() + l,
-                           column_b_.data() + l,
-                           kHeld,
-                           grows ? gain_.data() + l : kNoGain,
-                           compliance_.data() + l,
-                           tension_.data() + l,
-                           factor_.data() + l};
-    (is_1d_ ? kernel.maxwell_1d : kernel.maxwell_3d)(rows, columns, work);
+    MaxwellRows undecayed = rows(l, kStateBatch);
+    undecayed.velocity_retention = kHeld;
+    if (!grows) undecayed.gain = kNoGain;
+    (is_1d_ ? kernel.maxwell_1d : kernel.maxwell_3d)(undecayed, columns, work);
   }
   return half_of(work);
 }
@@ -83,7 +91,7 @@ StepEnergy MaxwellArray::add_first_forces(const StateKernel& kernel,
 }
 
 void MaxwellArray::go_back(const MatArray& mats) noexcept {
-  for (std::size_t l = 0; l < link_count_; ++l) {
+  for (const std::uint32_t l : rows_.row_of_link) {
     const std::uint32_t a = column_a_[l] / 4;
     const std::uint32_t b = column_b_[l] / 4;
     const Vec3 along = mats.position(b) - mats.position(a);
@@ -97,7 +105,7 @@ void MaxwellArray::go_back(const MatArray& mats) noexcept {
 }
 
 void MaxwellArray::mark_neighbours(const WakePropagation& pass, MatRoles& roles) const noexcept {
-  for (std::size_t l = 0; l < link_count_; ++l) {
+  for (const std::uint32_t l : rows_.row_of_link) {
     roles.join(column_a_[l] / 4, column_b_[l] / 4, pass);
     for (const std::uint32_t mat : {column_a_[l] / 4, column_b_[l] / 4}) {
       roles.add(mat, roles.has(mat, kIsMass) ? kWholeForce | kSomeForce : kSomeForce);
@@ -107,7 +115,7 @@ void MaxwellArray::mark_neighbours(const WakePropagation& pass, MatRoles& roles)
 
 StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
-  for (std::size_t l = 0; l < link_count_; ++l) {
+  for (const std::uint32_t l : rows_.row_of_link) {
     work.elastic +=
         factor_[l] * half_elongation_increment(mats, column_a_[l], column_b_[l], is_1d_);
   }
@@ -116,14 +124,14 @@ StepEnergy MaxwellArray::work_since_last_call(const MatArray& mats) const noexce
 
 double MaxwellArray::stored_energy() const noexcept {
   double sum = 0.0;
-  for (std::size_t l = 0; l < link_count_; ++l) sum += tension_[l] * tension_[l] * compliance_[l];
+  for (const std::uint32_t l : rows_.row_of_link) sum += tension_[l] * tension_[l] * compliance_[l];
   return 0.5 * sum;
 }
 
 void MaxwellArray::serialize(Archive& archive) {
   archive.reals(tension_);
   archive.reals(factor_);
-  archive.hash_rows(link_count_, tension_);
+  archive.hash_rows_at(rows_.row_of_link, tension_);
 }
 
 }  // namespace cordis::engine

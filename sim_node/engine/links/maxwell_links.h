@@ -7,6 +7,7 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/link_groups.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
@@ -22,11 +23,13 @@ double share_of_decay(double x) noexcept;
 /// Maxwell elements: see MaxwellLink.
 class MaxwellArray {
  public:
-  explicit MaxwellArray(const NetworkDescription& description);
+  MaxwellArray(const NetworkDescription& description, const MatBlocks& blocks);
 
-  /// Adds the force of every element to its two MATs, in order. Real time: O(elements), no
-  /// allocation. @return stored and dissipated energy, as EnergyAccount counts them.
-  StepEnergy add_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
+  /// Adds the force of every element to its two MATs, in the order of SpringDamperArray::add_forces, shared
+  /// likewise. Real time: O(elements), no allocation.
+  /// @return stored and dissipated energy, as EnergyAccount counts them.
+  StepEnergy add_forces(const StateKernel& kernel, const ForceColumns& columns,
+                        ThreadTeam& team) noexcept;
 
   /// Adds the stored forces unchanged, however far the MATs have moved.
   StepEnergy add_held_forces(const StateKernel& kernel, const ForceColumns& columns) noexcept;
@@ -50,13 +53,15 @@ class MaxwellArray {
   void serialize(Archive& archive);
 
  private:
+  MaxwellRows rows(std::size_t first, std::size_t count) noexcept;
   StepEnergy add_undecayed(const StateKernel& kernel, const ForceColumns& columns,
                            bool grows) noexcept;
 
   bool is_1d_;  // 1 dimension
-  std::size_t link_count_;
+  GroupedRows rows_;
+  LinkGroups groups_;
   AlignedVector<std::uint32_t> column_a_;     // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;     // all arrays: padded to a multiple of kStateBatch
+  AlignedVector<std::uint32_t> column_b_;     // all arrays: one value per row
   AlignedVector<double> velocity_retention_;  // e^(-K dt / Z)
   AlignedVector<double> gain_;                // Z (1 - e^(-K dt / Z)) / dt [N/m]
   AlignedVector<double> compliance_;          // 1 / K [m/N]

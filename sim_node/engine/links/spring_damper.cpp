@@ -32,15 +32,14 @@ GroupedLinks links_of(Kind kind, const NetworkDescription& description, const Ma
     if (!is_of(kind, description, link)) continue;
     links.insert(links.end(), axes_of(kind, description), link);
   }
-  std::vector<std::size_t> first(blocks.group_count() + 1, 0);
   std::vector<std::size_t> group;
   group.reserve(links.size());
-  for (const Link& link : links) ++first[group.emplace_back(blocks.group_of(link)) + 1];
-  for (std::size_t g = 1; g < first.size(); ++g) first[g] += first[g - 1];
-  std::vector<Link> sorted(links.size());
-  std::vector<std::size_t> place = first;
-  for (std::size_t l = 0; l < links.size(); ++l) sorted[place[group[l]]++] = links[l];
-  return {std::move(sorted), std::move(first)};
+  for (const Link& link : links) group.push_back(blocks.group_of(link.mat_a, link.mat_b));
+  GroupedOrder order = by_group(group, blocks.group_count());
+  std::vector<Link> sorted;
+  sorted.reserve(links.size());
+  for (const std::uint32_t link : order.links) sorted.push_back(links[link]);
+  return {std::move(sorted), std::move(order.first)};
 }
 
 }  // namespace
@@ -48,8 +47,7 @@ GroupedLinks links_of(Kind kind, const NetworkDescription& description, const Ma
 SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind kind,
                                      const MatLayout& layout, const MatBlocks& blocks)
     : layout_(layout),
-      blocks_(blocks),
-      works_(blocks.group_count()),
+      link_groups_(blocks),
       dimension_(description.dimension),
       is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
       freezes_(description.freeze_tolerance > 0.0),
@@ -66,12 +64,12 @@ void SpringDamperArray::arrange(const std::vector<Link>& links,
                                 std::size_t axes, double step) {
   LinkArrangement rows;
   rows.link_of_row.reserve(padded(links.size(), kLinkBatch));
-  for (std::size_t group = 0; group < blocks_.group_count(); ++group) {
+  const MatBlocks& blocks = link_groups_.blocks();
+  for (std::size_t group = 0; group < blocks.group_count(); ++group) {
     groups_.push_back({rows.link_of_row.size(), rows.runs.size()});
     const bool may_overhang =
-        group == blocks_.group_of_others();  // behind the last MAT there is room
-    const std::size_t last_mat =
-        blocks_.mats_of_group(group).last + (may_overhang ? kLinkBatch : 0);
+        group == blocks.group_of_others();  // behind the last MAT there is room
+    const std::size_t last_mat = blocks.mats_of_group(group).last + (may_overhang ? kLinkBatch : 0);
     arrange_links(std::span(links).subspan(first[group], first[group + 1] - first[group]),
                   static_cast<std::uint32_t>(first[group]), with_runs, last_mat, rows);
   }
@@ -88,7 +86,7 @@ void SpringDamperArray::arrange(const std::vector<Link>& links,
     while (groups_[group + 1].first_row <= row) ++group;
     const std::uint32_t link = rows.link_of_row[row];
     if (link == LinkArrangement::kEmpty) {
-      pad_row(row, blocks_.mats_of_group(group));
+      pad_row(row, blocks.mats_of_group(group));
     } else {
       fill_row(row, links[link], static_cast<std::uint32_t>(link % axes), step);
     }
@@ -170,47 +168,17 @@ RunRows SpringDamperArray::rows(std::size_t run) noexcept {
   return rows;
 }
 
-/// Calls add_group(group, work) for each group, those at once of which no two add to the forces of one MAT.
-template <class AddGroup>
-StepEnergy SpringDamperArray::add_groups(ThreadTeam& team, const AddGroup& add_group) noexcept {
-  const auto add = [&](std::size_t group) noexcept {
-    works_[group] = {};
-    add_group(group, works_[group]);
-  };
-  const std::size_t block_count = blocks_.count();
-  const auto share_groups = [&](std::size_t member) noexcept {
-    const ThreadTeam::Share blocks = team.share(member, block_count);
-    for (std::size_t block = blocks.first; block < blocks.last; ++block) add(block);
-    for (const std::size_t parity : {0U, 1U}) {
-      team.meet();
-      for (std::size_t block = blocks.first; block < blocks.last; ++block) {
-        if (block % 2 == parity && block + 1 < block_count) add(blocks_.group_between(block));
-      }
-    }
-  };
-  if (block_count > 1) team.run(share_groups);
-  add(blocks_.group_of_others());
-
-  LinkWork sum;
-  for (const LinkWork& work : works_) {
-    for (std::size_t place = 0; place < kLinkBatch; ++place) {
-      sum.elastic[place] += work.elastic[place];
-      sum.dissipated[place] += work.dissipated[place];
-    }
-  }
-  return half_of(sum);
-}
-
 StepEnergy SpringDamperArray::add(AddLinkForces add_link_forces, const ForceColumns& columns,
                                   ThreadTeam& team) noexcept {
   if (column_a_.empty()) return {};
   CORDIS_ASSERT(!layout_.is_by_axis());
-  if (blocks_.count() > 1 && !freezes_) {
-    return add_groups(team, [&](std::size_t group, LinkWork& work) noexcept {
+  if (!link_groups_.are_one() && !freezes_) {
+    const auto add_group = [&](std::size_t group, LinkWork& work) noexcept {
       const std::size_t first = groups_[group].first_row;
       const ActiveLinks::Run run{first, groups_[group + 1].first_row - first};
       if (run.count > 0) add_link_forces(rows(run), columns, work);
-    });
+    };
+    return half_of(link_groups_.add(team, add_group));
   }
   LinkWork work;
   for (const ActiveLinks::Run& run : active_.runs()) add_link_forces(rows(run), columns, work);
@@ -224,7 +192,7 @@ StepEnergy SpringDamperArray::add_by_axis(AddLinkForces gathered, const RunLoops
   const AddRunForces chained = viscous_ ? loops.chained_spring_dampers : loops.chained_springs;
   const AddRunForces along = viscous_ ? loops.spring_dampers : loops.springs;
 
-  return add_groups(team, [&](std::size_t group, LinkWork& work) noexcept {
+  const auto add_group = [&](std::size_t group, LinkWork& work) noexcept {
     for (std::size_t i = groups_[group].first_run; i < groups_[group + 1].first_run; ++i) {
       const LinkRun& run = runs_[i];
       if (run.is_gathered) {
@@ -233,7 +201,8 @@ StepEnergy SpringDamperArray::add_by_axis(AddLinkForces gathered, const RunLoops
         (run.first_b == run.first_a + 1 ? chained : along)(rows(i), rows_of_mats, work);
       }
     }
-  });
+  };
+  return half_of(link_groups_.add(team, add_group));
 }
 
 StepEnergy SpringDamperArray::add_forces(const StepKernel& kernel, const ForceColumns& columns,

@@ -8,6 +8,7 @@
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/core/thread_team.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/link_groups.h"
 #include "sim_node/engine/links/link_runs.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
@@ -92,13 +93,10 @@ class SpringDamperArray {
                  ThreadTeam& team) noexcept;
   StepEnergy add_by_axis(AddLinkForces gathered, const RunLoops& loops, const ForceColumns& rows,
                          ThreadTeam& team) noexcept;
-  template <class AddGroup>
-  StepEnergy add_groups(ThreadTeam& team, const AddGroup& add_group) noexcept;
 
   MatLayout layout_;
-  MatBlocks blocks_;
-  std::vector<Group> groups_;      // and one more, which ends the last
-  AlignedVector<LinkWork> works_;  // of each group in this step
+  LinkGroups link_groups_;
+  std::vector<Group> groups_;  // and one more, which ends the last
   int dimension_;
   bool is_1d_;                               // 1 dimension, or vector springs
   bool viscous_ = false;                     // a link has viscosity

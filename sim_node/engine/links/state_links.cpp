@@ -2,7 +2,6 @@
 #include "sim_node/engine/links/state_links.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
 #include "node/assert.h"
@@ -17,40 +16,47 @@ double mass_of(const Mat& mat) {
 
 }  // namespace
 
-StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table)
+StateLinkArray::StateLinkArray(const NetworkDescription& description, const StateTable& table,
+                               const MatBlocks& blocks)
     : is_1d_(description.dimension == 1),
+      freezes_(description.freeze_tolerance > 0.0),
       dt_(description.step),
       rate_(1.0 / description.step),
-      link_count_(description.state_links.size()),
-      column_a_(padded(link_count_, kStateBatch), 0U),
-      column_b_(column_a_.size(), 0U),
-      mass_a_(column_a_.size(), 0.0),
-      mass_b_(column_a_.size(), 0.0),
-      state_machine_(column_a_.size(), 0U),
-      state_(column_a_.size(), table.padding_state()),
-      rest_length_(column_a_.size(), 0.0),
-      tension_(column_a_.size(), 0.0),
-      impulse_(column_a_.size(), 0.0),
-      entered_(column_a_.size(), 0.0),
-      forced_(column_a_.size(), kNotForced),
-      elastic_factor_(column_a_.size(), 0.0),
-      viscous_factor_(column_a_.size(), 0.0),
-      active_(column_a_.size(), kStateBatch) {
-  for (std::size_t l = 0; l < link_count_; ++l) {
-    const StateLink& link = description.state_links[l];
-    column_a_[l] = 4 * link.mat_a;
-    column_b_[l] = 4 * link.mat_b;
-    mass_a_[l] = mass_of(description.mats[link.mat_a]);
-    mass_b_[l] = mass_of(description.mats[link.mat_b]);
-    state_machine_[l] = link.state_machine;
-    state_[l] = table.start_state(link.state_machine);
-    rest_length_[l] = link.rest_length;
+      rows_(description.state_links, blocks, kStateBatch),
+      groups_(blocks),
+      changes_(rows_.count()),
+      change_counts_(blocks.group_count(), 0),
+      column_a_(rows_.count(), 0U),
+      column_b_(rows_.count(), 0U),
+      mass_a_(rows_.count(), 0.0),
+      mass_b_(rows_.count(), 0.0),
+      state_machine_(rows_.count(), 0U),
+      state_(rows_.count(), table.padding_state()),
+      rest_length_(rows_.count(), 0.0),
+      tension_(rows_.count(), 0.0),
+      impulse_(rows_.count(), 0.0),
+      entered_(rows_.count(), 0.0),
+      forced_(rows_.count(), kNotForced),
+      elastic_factor_(rows_.count(), 0.0),
+      viscous_factor_(rows_.count(), 0.0),
+      active_(rows_.count(), kStateBatch) {
+  auto padding_mat = rows_.padding_mats.begin();
+  for (std::size_t r = 0; r < rows_.count(); ++r) {
+    if (rows_.is_padding(r)) {
+      column_a_[r] = column_b_[r] = 4 * *padding_mat++;
+      continue;
+    }
+    const StateLink& link = description.state_links[rows_.link_of_row[r]];
+    column_a_[r] = 4 * link.mat_a;
+    column_b_[r] = 4 * link.mat_b;
+    mass_a_[r] = mass_of(description.mats[link.mat_a]);
+    mass_b_[r] = mass_of(description.mats[link.mat_b]);
+    state_machine_[r] = link.state_machine;
+    state_[r] = table.start_state(link.state_machine);
+    rest_length_[r] = link.rest_length;
   }
-  for (std::size_t l = link_count_; l < column_a_.size(); ++l) {
-    column_a_[l] = column_b_[l] = column_of_padding(l, description.mats.size());
-  }
-  for (std::uint32_t l = 0; l < link_count_; ++l) {
-    if (laws_ask_for_variable(description.state_machines[state_machine_[l]])) asking_.push_back(l);
+  for (const std::uint32_t r : rows_.row_of_link) {
+    if (laws_ask_for_variable(description.state_machines[state_machine_[r]])) asking_.push_back(r);
   }
   adopt(table);
 }
@@ -124,57 +130,96 @@ void StateLinkArray::forget_viscous_forces() noexcept {
   std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
 }
 
-StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTable& table,
+/// @param changes  room for one of each row  @return how many there are
+std::size_t StateLinkArray::step_rows(const StateKernel& kernel, const StateTable& table,
                                       const ForceColumns& columns, std::uint64_t step,
-                                      EventLog& log) noexcept {
+                                      const ActiveLinks::Run& run, Change* changes,
+                                      LinkWork& work) noexcept {
   struct Entry {
-    const StateLinkArray* links;
     const StateTable* table;
-    EventLog* log;
-    std::uint64_t step;
-    std::size_t origin;  // link
-    double switching;    // [J]
+    std::size_t first_row;
+    Change* next;
   };
-  Entry entry{this, &table, &log, step, 0, 0.0};
-  if (!asking_.empty()) entry.switching = parameter_energy(table, columns);
-  const auto on_change = [](void* owner, std::size_t first, const StateMachineRows& rows) noexcept {
+  Entry entry{&table, run.first, changes};
+  StateLinkRows links = rows(table, run);
+  links.now = static_cast<double>(step);
+  links.owner = &entry;
+  links.on_change = [](void* owner, std::size_t first, const StateMachineRows& batch) noexcept {
     auto& target = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kStateBatch; ++i) {
-      if ((rows.changed >> i & 1U) == 0) continue;
-      const std::size_t l = target.origin + first + i;
-      const StateIndex first_state = target.table->first_state(target.links->state_machine_[l]);
-      const double energy = target.table->change_energy(rows, i);
-      target.switching += energy;
-      target.log->add({target.step, static_cast<std::uint32_t>(l), target.links->column_a_[l] / 4,
-                       target.links->column_b_[l] / 4, target.links->state_machine_[l],
-                       rows.from[i] - first_state, rows.state[i] - first_state,
-                       target.table->triggered(rows.from[i], rows.exit[i]), rows.trigger_value[i],
-                       energy});
+      if ((batch.changed >> i & 1U) == 0) continue;
+      *target.next++ = {static_cast<std::uint32_t>(target.first_row + first + i),
+                        batch.from[i],
+                        batch.state[i],
+                        batch.exit[i],
+                        batch.trigger_value[i],
+                        target.table->change_energy(batch, i)};
     }
   };
+  (is_1d_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
+  return static_cast<std::size_t>(entry.next - changes);
+}
+
+/// Enters the changes of all groups in the log, in link order.
+/// @return `energy`, and what they have brought into the links [J]
+double StateLinkArray::enter_changes(const StateTable& table, std::uint64_t step, double energy,
+                                     EventLog& log) noexcept {
+  const auto begin = changes_.begin();
+  auto end = begin;
+  for (std::size_t group = 0; group < change_counts_.size(); ++group) {
+    const auto first = begin + static_cast<std::ptrdiff_t>(rows_.first[group]);
+    const auto last = first + static_cast<std::ptrdiff_t>(change_counts_[group]);
+    end = first == end ? last : std::move(first, last, end);
+    change_counts_[group] = 0;
+  }
+  if (!groups_.are_one()) {
+    std::ranges::sort(begin, end, {},
+                      [this](const Change& change) { return rows_.link_of_row[change.row]; });
+  }
+  for (auto change = begin; change != end; ++change) {
+    const std::uint32_t machine = state_machine_[change->row];
+    const StateIndex first_state = table.first_state(machine);
+    energy += change->energy;
+    log.add({step, rows_.link_of_row[change->row], column_a_[change->row] / 4,
+             column_b_[change->row] / 4, machine, change->from - first_state,
+             change->to - first_state, table.triggered(change->from, change->exit), change->value,
+             change->energy});
+  }
+  return energy;
+}
+
+StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTable& table,
+                                      const ForceColumns& columns, std::uint64_t step,
+                                      EventLog& log, ThreadTeam& team) noexcept {
+  const double of_parameters = asking_.empty() ? 0.0 : parameter_energy(table, columns);
   LinkWork work;
-  for (const ActiveLinks::Run& run : active_.runs()) {
-    StateLinkRows links = rows(table, run);
-    entry.origin = run.first;
-    links.now = static_cast<double>(step);
-    links.owner = &entry;
-    links.on_change = on_change;
-    (is_1d_ ? kernel.state_links_1d : kernel.state_links_3d)(links, columns, work);
+  if (!groups_.are_one() && !freezes_) {
+    work = groups_.add(team, [&](std::size_t group, LinkWork& of_group) noexcept {
+      const ActiveLinks::Run run{rows_.first[group], rows_.count(group)};
+      if (run.count == 0) return;
+      change_counts_[group] =
+          step_rows(kernel, table, columns, step, run, changes_.data() + run.first, of_group);
+    });
+  } else {
+    for (const ActiveLinks::Run& run : active_.runs()) {
+      change_counts_[0] +=
+          step_rows(kernel, table, columns, step, run, changes_.data() + change_counts_[0], work);
+    }
   }
   any_forced_ = false;
   StepEnergy energy = half_of(work);
-  energy.switching = entry.switching;
+  energy.switching = enter_changes(table, step, of_parameters, log);
   return energy;
 }
 
 void StateLinkArray::mark_neighbours(const WakePropagation& pass,
                                      const std::vector<bool>& never_rests,
                                      MatRoles& roles) const noexcept {
-  for (std::size_t l = 0; l < link_count_; ++l) {
-    const std::uint32_t a = column_a_[l] / 4;
-    const std::uint32_t b = column_b_[l] / 4;
+  for (const std::uint32_t r : rows_.row_of_link) {
+    const std::uint32_t a = column_a_[r] / 4;
+    const std::uint32_t b = column_b_[r] / 4;
     roles.join(a, b, pass);
-    if (!never_rests[state_machine_[l]]) continue;
+    if (!never_rests[state_machine_[r]]) continue;
     const bool is_mass_a = roles.has(a, kIsMass);
     const bool is_mass_b = roles.has(b, kIsMass);
     if (is_mass_a || !is_mass_b) roles.add(a, kWholeForce);
@@ -188,36 +233,36 @@ void StateLinkArray::choose_active(MatRoles& roles) noexcept {
 
 StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
-  for (std::size_t l = 0; l < link_count_; ++l) {
+  for (const std::uint32_t r : rows_.row_of_link) {
     const double elongation_increment =
-        half_elongation_increment(mats, column_a_[l], column_b_[l], is_1d_);
-    work.elastic += elastic_factor_[l] * elongation_increment;
-    work.dissipated += viscous_factor_[l] * elongation_increment;
+        half_elongation_increment(mats, column_a_[r], column_b_[r], is_1d_);
+    work.elastic += elastic_factor_[r] * elongation_increment;
+    work.dissipated += viscous_factor_[r] * elongation_increment;
   }
   return work;
 }
 
-double StateLinkArray::distance_at_last_call(const MatArray& mats,
-                                             std::size_t link) const noexcept {
+double StateLinkArray::distance_at_last_call(const MatArray& mats, std::size_t row) const noexcept {
   const Vec3 along =
-      mats.position_of_forces(column_b_[link] / 4) - mats.position_of_forces(column_a_[link] / 4);
+      mats.position_of_forces(column_b_[row] / 4) - mats.position_of_forces(column_a_[row] / 4);
   return is_1d_ ? along.x() : along.norm();
 }
 
 double StateLinkArray::stored_energy(const StateTable& table, const MatArray& mats) const noexcept {
   double sum = 0.0;
-  for (std::size_t l = 0; l < link_count_; ++l) {
-    sum += table.stored_energy(state_[l], distance_at_last_call(mats, l), rest_length_[l],
-                               {mass_a_[l], mass_b_[l]});
+  for (const std::uint32_t r : rows_.row_of_link) {
+    sum += table.stored_energy(state_[r], distance_at_last_call(mats, r), rest_length_[r],
+                               {mass_a_[r], mass_b_[r]});
   }
   return sum;
 }
 
 void StateLinkArray::force_state(const StateTable& table, std::uint32_t link,
                                  std::uint32_t state) noexcept {
-  CORDIS_ASSERT(link < link_count_ &&
-                state < table.state_machines()[state_machine_[link]].states.size());
-  forced_[link] = table.first_state(state_machine_[link]) + state;
+  CORDIS_ASSERT(link < rows_.row_of_link.size());
+  const std::uint32_t row = row_of(link);
+  CORDIS_ASSERT(state < table.state_machines()[state_machine_[row]].states.size());
+  forced_[row] = table.first_state(state_machine_[row]) + state;
   any_forced_ = true;
 }
 
@@ -236,23 +281,24 @@ void StateLinkArray::adopt(const StateTable& table) {
 }
 
 std::uint32_t StateLinkArray::state_of(const StateTable& table, std::uint32_t link) const noexcept {
-  return state_[link] - table.first_state(state_machine_[link]);
+  const std::uint32_t row = row_of(link);
+  return state_[row] - table.first_state(state_machine_[row]);
 }
 
 void StateLinkArray::serialize(Archive& archive, const StateTable& table) {
-  const auto is_state = [this, &table](std::size_t l, StateIndex state) {
-    return l < link_count_ ? table.has_state(state_machine_[l], state)
-                           : state == table.padding_state();
+  const auto is_state = [this, &table](std::size_t row, StateIndex state) {
+    return rows_.is_padding(row) ? state == table.padding_state()
+                                 : table.has_state(state_machine_[row], state);
   };
   archive.wholes(std::span(state_), is_state);
-  archive.wholes(std::span(forced_), [&is_state](std::size_t l, StateIndex state) {
-    return state == kNotForced || is_state(l, state);
+  archive.wholes(std::span(forced_), [&is_state](std::size_t row, StateIndex state) {
+    return state == kNotForced || is_state(row, state);
   });
   for (auto* values : {&rest_length_, &tension_, &impulse_, &entered_, &elastic_factor_,
                        &viscous_factor_, &memory_}) {
     archive.reals(*values);
   }
-  archive.hash_rows(link_count_, state_, rest_length_, tension_, impulse_, entered_);
+  archive.hash_rows_at(rows_.row_of_link, state_, rest_length_, tension_, impulse_, entered_);
   if (!archive.restores()) return;
   any_forced_ = std::any_of(forced_.begin(), forced_.end(),
                             [](std::uint32_t target) { return target != kNotForced; });

@@ -8,6 +8,7 @@
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/event_log.h"
+#include "sim_node/engine/links/link_groups.h"
 #include "sim_node/engine/links/state_kernel.h"
 #include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/matter/energy_account.h"
@@ -21,9 +22,10 @@ namespace cordis::engine {
 /// [Luc90 III.2.3 b formalism to modify the liaison]
 class StateLinkArray {
  public:
-  StateLinkArray(const NetworkDescription& description, const StateTable& table);
+  StateLinkArray(const NetworkDescription& description, const StateTable& table,
+                 const MatBlocks& blocks);
 
-  bool empty() const noexcept { return link_count_ == 0; }
+  bool empty() const noexcept { return rows_.count() == 0; }
 
   /// Adds the forces of all links in their present states, without testing an exit: before step 0.
   void add_forces_before_start(const StateKernel& kernel, const StateTable& table,
@@ -35,11 +37,13 @@ class StateLinkArray {
   /// Forgets the viscous forces of the last call.
   void forget_viscous_forces() noexcept;
 
-  /// One step: exits, changes of state, then the force of every link on its two MATs, in link
-  /// order. Enters the changes in the log. Real time: O(links), no allocation.
+  /// One step: exits, changes of state, then the force of every link on its two MATs, group by group of the
+  /// MatBlocks, which the members of the team share, and within a group in link order. Enters the
+  /// changes in the log, in link order. Real time: O(links), no allocation.
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them.
   StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
-                        const ForceColumns& columns, std::uint64_t step, EventLog& log) noexcept;
+                        const ForceColumns& columns, std::uint64_t step, EventLog& log,
+                        ThreadTeam& team) noexcept;
 
   /// As those of SpringDamperArray. Links of a state machine whose conditions may come true while
   /// both ends rest are always computed: their masses get kWholeForce.
@@ -59,38 +63,59 @@ class StateLinkArray {
   void adopt(const StateTable& table);
 
   std::uint32_t state_of(const StateTable& table, std::uint32_t link) const noexcept;
-  double rest_length(std::uint32_t link) const noexcept { return rest_length_[link]; }
-  double tension(std::uint32_t link) const noexcept { return tension_[link]; }
+  double rest_length(std::uint32_t link) const noexcept { return rest_length_[row_of(link)]; }
+  double tension(std::uint32_t link) const noexcept { return tension_[row_of(link)]; }
   /// Since the state was entered, before a step [s].
   double age(std::uint32_t link, std::uint64_t step) const noexcept {
-    return (static_cast<double>(step) - entered_[link]) * dt_;
+    return (static_cast<double>(step) - entered_[row_of(link)]) * dt_;
   }
-  StateIndex state_index(std::uint32_t link) const noexcept { return state_[link]; }
+  StateIndex state_index(std::uint32_t link) const noexcept { return state_[row_of(link)]; }
   /// True if a change of state has happened in this step, which is not the first.
   bool is_new(std::uint32_t link, std::uint64_t step) const noexcept {
-    return step > 0 && entered_[link] == static_cast<double>(step);
+    return step > 0 && entered_[row_of(link)] == static_cast<double>(step);
   }
   /// The tension of this step is another one; its force has been put on the MATs.
   void set_tension(std::uint32_t link, double tension) noexcept {
-    impulse_[link] += (tension - tension_[link]) * dt_;
-    tension_[link] = tension;
+    const std::uint32_t row = row_of(link);
+    impulse_[row] += (tension - tension_[row]) * dt_;
+    tension_[row] = tension;
   }
 
   void serialize(Archive& archive, const StateTable& table);
 
  private:
+  /// A change of state in this step.
+  struct Change {
+    std::uint32_t row = 0;
+    StateIndex from = 0;
+    StateIndex to = 0;
+    std::uint32_t exit = 0;  // number among the exits of `from`, or kNotForced
+    double value = 0.0;      // of the quantity that triggered
+    double energy = 0.0;     // stored after minus before [J]
+  };
+
+  std::uint32_t row_of(std::uint32_t link) const noexcept { return rows_.row_of_link[link]; }
+  std::size_t step_rows(const StateKernel& kernel, const StateTable& table,
+                        const ForceColumns& columns, std::uint64_t step,
+                        const ActiveLinks::Run& run, Change* changes, LinkWork& work) noexcept;
+  double enter_changes(const StateTable& table, std::uint64_t step, double energy,
+                       EventLog& log) noexcept;
   StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
   /// What the change of variables that laws ask for has brought into the links [J]. Real time: O(links that ask).
   double parameter_energy(const StateTable& table, const ForceColumns& columns) const noexcept;
-  double distance_at_last_call(const MatArray& mats, std::size_t link) const noexcept;
+  double distance_at_last_call(const MatArray& mats, std::size_t row) const noexcept;
 
-  bool is_1d_;   // 1 dimension
-  double dt_;    // [s]
-  double rate_;  // 1 / dt [1/s]
-  std::size_t link_count_;
-  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;  // all arrays: padded to a multiple of kStateBatch
-  AlignedVector<double> mass_a_;           // [kg], 0 unless a mass
+  bool is_1d_;    // 1 dimension
+  bool freezes_;  // only some links are computed
+  double dt_;     // [s]
+  double rate_;   // 1 / dt [1/s]
+  GroupedRows rows_;
+  LinkGroups groups_;
+  std::vector<Change> changes_;             // of this step: room for one of each row
+  std::vector<std::size_t> change_counts_;  // of each group: its changes begin where its rows do
+  AlignedVector<std::uint32_t> column_a_;   // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;   // all arrays: one value per row
+  AlignedVector<double> mass_a_;            // [kg], 0 unless a mass
   AlignedVector<double> mass_b_;
   AlignedVector<std::uint32_t> state_machine_;
   AlignedVector<StateIndex> state_;
@@ -107,7 +132,8 @@ class StateLinkArray {
   bool needs_impulse_ = false;  // some program of the table does
   bool needs_age_ = false;
   bool needs_velocity_ = false;
-  std::vector<std::uint32_t> asking_;  // links of a law that asks for variables, in some state
+  std::vector<std::uint32_t>
+      asking_;  // rows of links of a law that asks for variables, in some state
   ActiveLinks active_;
 };
 

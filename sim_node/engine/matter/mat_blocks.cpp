@@ -9,15 +9,36 @@
 namespace cordis::engine {
 namespace {
 
-std::uint32_t reach_of(const Link& link) noexcept {
-  return link.mat_a < link.mat_b ? link.mat_b - link.mat_a : link.mat_a - link.mat_b;
+/// The MATs that a link joins.
+struct Ends {
+  std::uint32_t low;
+  std::uint32_t high;
+};
+
+/// All links that the blocks take apart.
+std::vector<Ends> ends_of(const NetworkDescription& description) {
+  std::vector<Ends> ends;
+  ends.reserve(description.links.size() + description.state_links.size() +
+               description.maxwell_links.size() + description.bends.size());
+  const auto add = [&ends](const auto& links) {
+    for (const auto& link : links)
+      ends.push_back({std::min(link.mat_a, link.mat_b), std::max(link.mat_a, link.mat_b)});
+  };
+  add(description.links);
+  add(description.state_links);
+  add(description.maxwell_links);
+  for (const Bend& bend : description.bends) {
+    const auto [low, high] = std::minmax({bend.mat_a, bend.mat_b, bend.mat_c});
+    ends.push_back({low, high});
+  }
+  return ends;
 }
 
 /// How many MATs a link goes over; 1 % go farther.
-std::size_t reach_of(const std::vector<Link>& links) {
+std::size_t reach_of(const std::vector<Ends>& links) {
   std::vector<std::uint32_t> reach;
   reach.reserve(links.size());
-  for (const Link& link : links) reach.push_back(reach_of(link));
+  for (const Ends& link : links) reach.push_back(link.high - link.low);
   const auto place =
       reach.begin() + static_cast<std::ptrdiff_t>(reach.size() - reach.size() / 100 - 1);
   std::nth_element(reach.begin(), place, reach.end());
@@ -32,8 +53,7 @@ std::size_t largest_set(const NetworkDescription& description) {
 }
 
 /// Blocks, as far as the work lets there be.
-std::size_t block_count(const NetworkDescription& description) {
-  const std::size_t links = description.links.size();
+std::size_t block_count(const NetworkDescription& description, std::size_t links) {
   const std::size_t balls = largest_set(description);
   const std::size_t by_links = links < MatBlocks::kMinLinks ? 1 : links / MatBlocks::kLinksOfBlock;
   const std::size_t by_balls = balls < MatBlocks::kMinBalls ? 1 : balls / MatBlocks::kBallsOfBlock;
@@ -44,16 +64,16 @@ std::size_t block_count(const NetworkDescription& description) {
 
 MatBlocks::MatBlocks(const NetworkDescription& description) : first_{0} {
   const std::size_t mat_count = description.mats.size();
-  const std::size_t by_work = block_count(description);
-  const std::size_t reach =
-      by_work == 1 || description.links.empty() ? 0 : reach_of(description.links);
+  const std::vector<Ends> links = ends_of(description);
+  const std::size_t by_work = block_count(description, links.size());
+  const std::size_t reach = by_work == 1 || links.empty() ? 0 : reach_of(links);
   const std::size_t count = std::clamp<std::size_t>(mat_count / (kBatchRows + reach), 1, by_work);
   // The work of a MAT: itself, and the links that begin at it.
   std::vector<std::uint32_t> work(count > 1 ? mat_count : 0, 1);
   if (count > 1) {
-    for (const Link& link : description.links) ++work[std::min(link.mat_a, link.mat_b)];
+    for (const Ends& link : links) ++work[link.low];
   }
-  const std::size_t whole = mat_count + description.links.size();
+  const std::size_t whole = mat_count + links.size();
   std::size_t done = 0;
   for (std::uint32_t i = 0; i < work.size(); ++i) {
     done += work[i];
@@ -72,10 +92,10 @@ std::size_t MatBlocks::block_of(std::uint32_t mat) const noexcept {
                                   (first_.begin() + 1));
 }
 
-std::size_t MatBlocks::group_of(const Link& link) const noexcept {
+std::size_t MatBlocks::group_of(std::uint32_t mat_a, std::uint32_t mat_b) const noexcept {
   if (count() == 1) return group_of_others();
-  const std::size_t low = block_of(std::min(link.mat_a, link.mat_b));
-  const std::size_t high = block_of(std::max(link.mat_a, link.mat_b));
+  const std::size_t low = block_of(std::min(mat_a, mat_b));
+  const std::size_t high = block_of(std::max(mat_a, mat_b));
   if (low == high) return low;
   return high == low + 1 ? group_between(low) : group_of_others();
 }

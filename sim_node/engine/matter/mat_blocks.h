@@ -15,17 +15,17 @@ namespace cordis::engine {
 /// sums its forces in an order that depends on the network alone, not on how many threads there are.
 class MatBlocks {
  public:
-  /// Linear links, below which there is one block.
+  /// Links, below which there is one block: linear ones, those with states, Maxwell elements, bends.
   static constexpr std::size_t kMinLinks = 16384;
-  /// Linear links of a block, on average at least.
+  /// Links of a block, on average at least.
   static constexpr std::size_t kLinksOfBlock = 1024;
   static constexpr std::size_t kMaxBlocks = 128;
-  /// Balls of a set that count like as many linear links.
+  /// Balls of a set that count like as many links.
   static constexpr std::size_t kMinBalls = 4096;
   static constexpr std::size_t kBallsOfBlock = 256;
 
-  /// As many blocks as leave no more than 1 % of the linear links to the others, with as much work
-  /// in each as that lets them have. There is one block where the network has few linear links and
+  /// As many blocks as leave no more than 1 % of the links to the others, with as much work
+  /// in each as that lets them have. There is one block where the network has few links and
   /// no large set, or links that join MATs of any two places.
   explicit MatBlocks(const NetworkDescription& description);
 
@@ -39,7 +39,7 @@ class MatBlocks {
   /// Links come in groups: count() within a block, count() - 1 from one to the next, one of all others; of one
   /// block alone, one of all.
   std::size_t group_count() const noexcept { return group_of_others() + 1; }
-  std::size_t group_of(const Link& link) const noexcept;
+  std::size_t group_of(std::uint32_t mat_a, std::uint32_t mat_b) const noexcept;
   /// From this block to the next: those from even blocks come before those from odd ones, for no two of
   /// either join one MAT.
   std::size_t group_between(std::size_t block) const noexcept {
