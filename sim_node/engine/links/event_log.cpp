@@ -3,6 +3,8 @@
 
 #include <numeric>
 
+#include "node/assert.h"
+
 namespace cordis::engine {
 
 EventLog::EventLog(const StateTable& table, std::size_t capacity) : events_(capacity) {
@@ -20,14 +22,24 @@ void EventLog::begin_step() noexcept {
   lost_ = 0;
 }
 
-void EventLog::add(const LinkEvent& event) noexcept {
+void EventLog::count(const LinkEvent& event) noexcept {
   ++change_count_[place(event.state_machine, event.from, event.to)];
   ++total_change_count_;
+}
+
+void EventLog::add(const LinkEvent& event) noexcept {
+  count(event);
   if (count_ == events_.size()) {
     ++lost_;
     return;
   }
   events_[count_++] = event;
+}
+
+void EventLog::enter(std::size_t entered) noexcept {
+  CORDIS_ASSERT(entered <= room().size());
+  for (const LinkEvent& event : room().first(entered)) count(event);
+  count_ += entered;
 }
 
 std::uint64_t EventLog::change_count(std::uint32_t state_machine, std::uint32_t from,

@@ -23,6 +23,12 @@ class EventLog {
   /// Enters a change, and counts it. Real time: O(1), no allocation.
   void add(const LinkEvent& event) noexcept;
 
+  /// Room that no event has yet: of links, one for each. Written by several threads, then entered by one.
+  std::span<LinkEvent> room() noexcept { return std::span(events_).subspan(count_); }
+  /// Enters the first events of the room, and counts them. Precondition: it has so many.
+  /// Real time: O(count), no allocation.
+  void enter(std::size_t count) noexcept;
+
   std::span<const LinkEvent> events() const noexcept { return {events_.data(), count_}; }
   std::uint32_t lost() const noexcept { return lost_; }  ///< changes without room in this step
   /// How often a state machine went from a state to another since step 0.
@@ -40,6 +46,7 @@ class EventLog {
     std::size_t state_count;  // of the state machine
   };
 
+  void count(const LinkEvent& event) noexcept;
   std::size_t place(std::uint32_t state_machine, std::uint32_t from,
                     std::uint32_t to) const noexcept;
 

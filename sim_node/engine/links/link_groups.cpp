@@ -25,6 +25,7 @@ void GroupedRows::fill(const std::vector<std::size_t>& group_of_link, const MatB
   link_of_row.reserve(padded(group_of_link.size(), batch));
   for (std::size_t group = 0; group < blocks.group_count(); ++group) {
     first.push_back(link_of_row.size());
+    links_before.push_back(order.first[group]);
     for (std::size_t place = order.first[group]; place < order.first[group + 1]; ++place) {
       row_of_link[order.links[place]] = static_cast<std::uint32_t>(link_of_row.size());
       link_of_row.push_back(order.links[place]);

@@ -24,7 +24,6 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       rate_(1.0 / description.step),
       rows_(description.state_links, blocks, kStateBatch),
       groups_(blocks),
-      changes_(rows_.count()),
       change_counts_(blocks.group_count(), 0),
       column_a_(rows_.count(), 0U),
       column_b_(rows_.count(), 0U),
@@ -130,17 +129,19 @@ void StateLinkArray::forget_viscous_forces() noexcept {
   std::fill(viscous_factor_.begin(), viscous_factor_.end(), 0.0);
 }
 
-/// @param changes  room for one of each row  @return how many there are
+/// @param changes  room for one of each link  @return how many there are
 std::size_t StateLinkArray::step_rows(const StateKernel& kernel, const StateTable& table,
                                       const ForceColumns& columns, std::uint64_t step,
-                                      const ActiveLinks::Run& run, Change* changes,
+                                      const ActiveLinks::Run& run, LinkEvent* changes,
                                       LinkWork& work) noexcept {
   struct Entry {
+    const StateLinkArray* links;
     const StateTable* table;
+    std::uint64_t step;
     std::size_t first_row;
-    Change* next;
+    LinkEvent* next;
   };
-  Entry entry{&table, run.first, changes};
+  Entry entry{this, &table, step, run.first, changes};
   StateLinkRows links = rows(table, run);
   links.now = static_cast<double>(step);
   links.owner = &entry;
@@ -148,10 +149,17 @@ std::size_t StateLinkArray::step_rows(const StateKernel& kernel, const StateTabl
     auto& target = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kStateBatch; ++i) {
       if ((batch.changed >> i & 1U) == 0) continue;
-      *target.next++ = {static_cast<std::uint32_t>(target.first_row + first + i),
-                        batch.from[i],
-                        batch.state[i],
-                        batch.exit[i],
+      const StateLinkArray& of = *target.links;
+      const std::size_t row = target.first_row + first + i;
+      const StateIndex first_state = target.table->first_state(of.state_machine_[row]);
+      *target.next++ = {target.step,
+                        of.rows_.link_of_row[row],
+                        of.column_a_[row] / 4,
+                        of.column_b_[row] / 4,
+                        of.state_machine_[row],
+                        batch.from[i] - first_state,
+                        batch.state[i] - first_state,
+                        target.table->triggered(batch.from[i], batch.exit[i]),
                         batch.trigger_value[i],
                         target.table->change_energy(batch, i)};
     }
@@ -160,55 +168,46 @@ std::size_t StateLinkArray::step_rows(const StateKernel& kernel, const StateTabl
   return static_cast<std::size_t>(entry.next - changes);
 }
 
-/// Enters the changes of all groups in the log, in link order.
+/// Enters the changes of all groups, which stand in the room of the log, in link order.
 /// @return `energy`, and what they have brought into the links [J]
-double StateLinkArray::enter_changes(const StateTable& table, std::uint64_t step, double energy,
-                                     EventLog& log) noexcept {
-  const auto begin = changes_.begin();
+double StateLinkArray::enter_changes(EventLog& log, double energy) noexcept {
+  const auto begin = log.room().begin();
   auto end = begin;
   for (std::size_t group = 0; group < change_counts_.size(); ++group) {
-    const auto first = begin + static_cast<std::ptrdiff_t>(rows_.first[group]);
+    const auto first = begin + static_cast<std::ptrdiff_t>(rows_.links_before[group]);
     const auto last = first + static_cast<std::ptrdiff_t>(change_counts_[group]);
     end = first == end ? last : std::move(first, last, end);
     change_counts_[group] = 0;
   }
-  if (!groups_.are_one()) {
-    std::ranges::sort(begin, end, {},
-                      [this](const Change& change) { return rows_.link_of_row[change.row]; });
-  }
-  for (auto change = begin; change != end; ++change) {
-    const std::uint32_t machine = state_machine_[change->row];
-    const StateIndex first_state = table.first_state(machine);
-    energy += change->energy;
-    log.add({step, rows_.link_of_row[change->row], column_a_[change->row] / 4,
-             column_b_[change->row] / 4, machine, change->from - first_state,
-             change->to - first_state, table.triggered(change->from, change->exit), change->value,
-             change->energy});
-  }
+  if (!groups_.are_one()) std::ranges::sort(begin, end, {}, &LinkEvent::link);
+  for (auto change = begin; change != end; ++change) energy += change->energy;
+  log.enter(static_cast<std::size_t>(end - begin));
   return energy;
 }
 
 StepEnergy StateLinkArray::add_forces(const StateKernel& kernel, const StateTable& table,
                                       const ForceColumns& columns, std::uint64_t step,
                                       EventLog& log, ThreadTeam& team) noexcept {
+  CORDIS_ASSERT(rows_.row_of_link.size() <= log.room().size());
+  LinkEvent* const changes = log.room().data();
   const double of_parameters = asking_.empty() ? 0.0 : parameter_energy(table, columns);
   LinkWork work;
   if (!groups_.are_one() && !freezes_) {
     work = groups_.add(team, [&](std::size_t group, LinkWork& of_group) noexcept {
       const ActiveLinks::Run run{rows_.first[group], rows_.count(group)};
       if (run.count == 0) return;
-      change_counts_[group] =
-          step_rows(kernel, table, columns, step, run, changes_.data() + run.first, of_group);
+      change_counts_[group] = step_rows(kernel, table, columns, step, run,
+                                        changes + rows_.links_before[group], of_group);
     });
   } else {
     for (const ActiveLinks::Run& run : active_.runs()) {
       change_counts_[0] +=
-          step_rows(kernel, table, columns, step, run, changes_.data() + change_counts_[0], work);
+          step_rows(kernel, table, columns, step, run, changes + change_counts_[0], work);
     }
   }
   any_forced_ = false;
   StepEnergy energy = half_of(work);
-  energy.switching = enter_changes(table, step, of_parameters, log);
+  energy.switching = enter_changes(log, of_parameters);
   return energy;
 }
 

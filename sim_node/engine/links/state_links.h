@@ -84,22 +84,11 @@ class StateLinkArray {
   void serialize(Archive& archive, const StateTable& table);
 
  private:
-  /// A change of state in this step.
-  struct Change {
-    std::uint32_t row = 0;
-    StateIndex from = 0;
-    StateIndex to = 0;
-    std::uint32_t exit = 0;  // number among the exits of `from`, or kNotForced
-    double value = 0.0;      // of the quantity that triggered
-    double energy = 0.0;     // stored after minus before [J]
-  };
-
   std::uint32_t row_of(std::uint32_t link) const noexcept { return rows_.row_of_link[link]; }
   std::size_t step_rows(const StateKernel& kernel, const StateTable& table,
                         const ForceColumns& columns, std::uint64_t step,
-                        const ActiveLinks::Run& run, Change* changes, LinkWork& work) noexcept;
-  double enter_changes(const StateTable& table, std::uint64_t step, double energy,
-                       EventLog& log) noexcept;
+                        const ActiveLinks::Run& run, LinkEvent* changes, LinkWork& work) noexcept;
+  double enter_changes(EventLog& log, double energy) noexcept;
   StateLinkRows rows(const StateTable& table, const ActiveLinks::Run& run) noexcept;
   /// What the change of variables that laws ask for has brought into the links [J]. Real time: O(links that ask).
   double parameter_energy(const StateTable& table, const ForceColumns& columns) const noexcept;
@@ -111,8 +100,7 @@ class StateLinkArray {
   double rate_;   // 1 / dt [1/s]
   GroupedRows rows_;
   LinkGroups groups_;
-  std::vector<Change> changes_;             // of this step: room for one of each row
-  std::vector<std::size_t> change_counts_;  // of each group: its changes begin where its rows do
+  std::vector<std::size_t> change_counts_;  // of each group in this step
   AlignedVector<std::uint32_t> column_a_;   // 4 * MAT index
   AlignedVector<std::uint32_t> column_b_;   // all arrays: one value per row
   AlignedVector<double> mass_a_;            // [kg], 0 unless a mass
