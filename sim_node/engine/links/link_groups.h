@@ -86,7 +86,7 @@ struct GroupedRows {
   std::vector<std::uint32_t> link_of_row;  ///< index of the link, or kPadding
   std::vector<std::uint32_t> row_of_link;
   std::vector<std::size_t> first;         ///< row of each group; and one more, which ends the last
-  std::vector<std::size_t> links_before;  ///< those in the groups before each group
+  std::vector<std::size_t> links_before;  ///< number of links in the groups before each group
   std::vector<std::uint32_t> padding_mats;  ///< by row of padding, in the order of the rows
 
  private:

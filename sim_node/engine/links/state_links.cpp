@@ -149,14 +149,14 @@ std::size_t StateLinkArray::step_rows(const StateKernel& kernel, const StateTabl
     auto& target = *static_cast<Entry*>(owner);
     for (std::size_t i = 0; i < kStateBatch; ++i) {
       if ((batch.changed >> i & 1U) == 0) continue;
-      const StateLinkArray& of = *target.links;
+      const StateLinkArray& array = *target.links;
       const std::size_t row = target.first_row + first + i;
-      const StateIndex first_state = target.table->first_state(of.state_machine_[row]);
+      const StateIndex first_state = target.table->first_state(array.state_machine_[row]);
       *target.next++ = {target.step,
-                        of.rows_.link_of_row[row],
-                        of.column_a_[row] / 4,
-                        of.column_b_[row] / 4,
-                        of.state_machine_[row],
+                        array.rows_.link_of_row[row],
+                        array.column_a_[row] / 4,
+                        array.column_b_[row] / 4,
+                        array.state_machine_[row],
                         batch.from[i] - first_state,
                         batch.state[i] - first_state,
                         target.table->triggered(batch.from[i], batch.exit[i]),
