@@ -65,7 +65,9 @@ void run_realtime(SceneLoop& loop, node::StatusPublisher& status) {
     // Answers first: the hand waits for them, and the display does not.
     loop.devices().answer_received(loop.simulation());
     if (plays) loop.show(complete);
-    loop.runner().loaded_scene().shadow->hand_over(loop.simulation().world());
+    const Simulation& simulation = loop.simulation();
+    loop.runner().loaded_scene().shadow->hand_over(simulation.world(),
+                                                   simulation.largest_kinetic_energy());
   }
   if (ticks > 0) spdlog::info("{}", cost.text(ticks));
 }

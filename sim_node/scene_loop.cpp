@@ -162,7 +162,7 @@ void SceneLoop::watch_bounds(bool is_frame) {
   const engine::World& world = simulation().world();
   const bool is_realtime = clock_ == config::Clock::kRealtime;
   const BoundSigns signs = is_realtime ? status_.signs_of(*loaded.shadow)
-                           : is_frame  ? signs_of(world, loaded.energy.update(world), loaded.reach)
+                           : is_frame  ? signs_of(world, loaded.sample_energy(), loaded.reach)
                                        : BoundSigns{};
   if (!signs.has_energy) simulation().fail();
   if (!loaded.watches_energy() || is_forced_) return;

@@ -57,7 +57,10 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
   const PassedBound bound = simulation.passed_bound();
   record_let_go(simulation, let_go || (!simulation.has_devices() && bound != PassedBound::kNone &&
                                        bound != PassedBound::kPartners));
-  if (!realtime || !is_looping_) figures_.of_world = figures_of(simulation.world(), loaded.energy);
+  if (!realtime || !is_looping_) {
+    loaded.energy.add(simulation.largest_kinetic_energy());
+    figures_.of_world = figures_of(simulation.world(), loaded.energy);
+  }
   figures_.is_looping = is_looping_;
   const bool had_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
   figures_.troubles = simulation.troubles();

@@ -269,7 +269,7 @@ bool OfflineSession::play_tick(const std::function<void()>& after_step) {
   simulation().read_signals(row_.data());
   sim::BoundSigns signs;
   if (simulation().tick_count() % loaded_->ticks_per_frame == 0) {
-    const engine::Energy energy = loaded_->energy.update(world());
+    const engine::Energy energy = loaded_->sample_energy();
     watch_integration_error(energy);
     if (!std::isfinite(energy.total())) simulation().fail();
     if (simulation().failed()) return diverged();

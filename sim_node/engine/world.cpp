@@ -235,6 +235,11 @@ Vec3 World::velocity(std::uint32_t mat) const noexcept {
   return state_->scheme->velocity(*state_, mat);
 }
 
+double World::kinetic_energy() const noexcept {
+  const FloatMode mode;
+  return state_->scheme->kinetic_energy(*state_);
+}
+
 Vec3 World::link_force(std::uint32_t mat) const noexcept {
   CORDIS_ASSERT(mat < network().mat_count());
   return state_->mats.force(mat);

@@ -17,6 +17,10 @@ double energy_of_moment(const engine::Energy& energy) noexcept {
 
 }  // namespace
 
+void EnergyWatch::add(double largest_kinetic) noexcept {
+  if (std::isfinite(largest_kinetic)) largest_ = std::max(largest_, largest_kinetic);
+}
+
 engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
   engine::Energy energy = world.energy();
   const double now = energy_of_moment(energy);

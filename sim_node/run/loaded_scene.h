@@ -28,6 +28,12 @@ struct LoadedScene {
   /// True if the run of this scene needs its energy.
   bool watches_energy() const noexcept { return !is_certain || may_turn || !reach.is_infinite(); }
 
+  /// The energy of now, and the largest so far. Real time: O(MATs + links + pairs), no allocation.
+  engine::Energy sample_energy() noexcept {
+    energy.add(simulation.largest_kinetic_energy());
+    return energy.update(simulation.world());
+  }
+
   /// The bound beyond which a scene that is not certain lets go of its devices, if K' + 2 Z' or its
   /// energy passes it now. A scene that is certified within a reach is certain until it goes beyond
   /// it, once and for all. The energy of links that may turn about is watched from the start on. What is

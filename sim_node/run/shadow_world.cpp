@@ -48,10 +48,10 @@ BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
 }
 
 ShadowWorld::ShadowWorld(std::shared_ptr<const engine::Network> network,
-                         const plan::ReachLimit& reach) noexcept
-    : id_(next_id()), network_(std::move(network)), reach_(reach) {}
+                         plan::ReachLimit reach) noexcept
+    : id_(next_id()), network_(std::move(network)), reach_(std::move(reach)) {}
 
-void ShadowWorld::hand_over(const engine::World& world) noexcept {
+void ShadowWorld::hand_over(const engine::World& world, double largest_kinetic) noexcept {
   if (copy_.load(std::memory_order_acquire) != Copy::kAsked) return;
   value_count_ = world.max_values_of_state();
   if (value_count_ > room_.capacity()) {
@@ -60,6 +60,7 @@ void ShadowWorld::hand_over(const engine::World& world) noexcept {
   }
   world.copy_state(room_);
   step_ = world.step_count();
+  largest_kinetic_ = largest_kinetic;
   copy_.store(Copy::kThere, std::memory_order_release);
 }
 
@@ -81,8 +82,10 @@ std::optional<WorldFigures> ShadowWorld::read(std::chrono::milliseconds patience
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const bool fits = world_->take_state(room_, step_);
+  const double largest_kinetic = largest_kinetic_;
   copy_.store(Copy::kNone, std::memory_order_release);
   if (!fits) return std::nullopt;
+  watch_.add(largest_kinetic);
   return figures_of(*world_, watch_, reach_);
 }
 

@@ -54,13 +54,14 @@ class ShadowWorld {
  public:
   /// @param reach  that is_beyond_reach is about
   explicit ShadowWorld(std::shared_ptr<const engine::Network> network,
-                       const plan::ReachLimit& reach = {}) noexcept;
+                       plan::ReachLimit reach = {}) noexcept;
 
   /// From 1 on; differs from that of every other one in this process. Any thread.
   std::uint64_t id() const noexcept { return id_; }
 
   /// The loop, between two steps: copies the state if it was asked for. Real time: no allocation.
-  void hand_over(const engine::World& world) noexcept;
+  /// @param largest_kinetic  seen so far by a KineticWatch of this world [J]
+  void hand_over(const engine::World& world, double largest_kinetic = 0.0) noexcept;
 
   /// The other thread: asks for a copy and reads its figures. Makes room the first time.
   /// @param patience  wait for the loop at most; a copy that comes later serves the next call
@@ -77,6 +78,7 @@ class ShadowWorld {
   std::vector<double> room_;              // of the loop while a copy is asked for
   std::size_t value_count_ = 0;           // likewise; of a state that is too large for the room
   std::uint64_t step_ = 0;                // likewise
+  double largest_kinetic_ = 0.0;          // likewise [J]
   std::atomic<Copy> copy_{Copy::kNone};
 };
 

@@ -87,6 +87,7 @@ bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room)
     if (now != nullptr) now->take_over(device, /*at_once=*/true);
   }
   partners_.take_over(before.partners_);
+  kinetic_ = before.kinetic_;
   passed_bound_ = before.passed_bound_;
   troubles_ = before.troubles_;
   division_ = before.division_;
@@ -111,6 +112,7 @@ bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept 
     for (DeviceExchange& device : devices_) device.play(world_, steps_in_tick_, share);
     const engine::StepReport report = world_.step();
     events.add(world_.events(), report.lost_events);
+    kinetic_.update(world_);
     partners_.update(world_);
     if (partners_.is_passed()) let_devices_go(PassedBound::kPartners);
     troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;

@@ -10,6 +10,7 @@
 #include "sim_node/devices/device_exchange.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/run/event_room.h"
+#include "sim_node/run/kinetic_watch.h"
 #include "sim_node/run/step_rows.h"
 #include "sim_node/run/tick_division.h"
 #include "sim_node/scene/scene.h"
@@ -86,6 +87,9 @@ class Simulation {
   /// How many others a mass of a set has touched, over all steps.
   const PartnerWatch& partners() const noexcept { return partners_; }
 
+  /// Seen between the steps, with the rate of a KineticWatch [J].
+  double largest_kinetic_energy() const noexcept { return kinetic_.largest(); }
+
   const StepTroubles& troubles() const noexcept { return troubles_; }
 
   /// From now on no bound lets go of the devices.
@@ -110,6 +114,7 @@ class Simulation {
   std::shared_ptr<const scene::Scene> scene_;
   engine::World world_;
   PartnerWatch partners_;
+  KineticWatch kinetic_;
   StepTroubles troubles_;
   std::vector<DeviceExchange> devices_;
   TickDivision division_;

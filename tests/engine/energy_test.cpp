@@ -88,6 +88,31 @@ TEST(Energy, OfAnOscillatorIsThatOfItsExactMotion) {
   EXPECT_NEAR(energy.dissipated, all - 0.5 * mass_kg * v * v - 0.5 * stiffness * x * x, 1e-4 * all);
 }
 
+TEST(Energy, OfMotionAloneIsThatOfAllMassesWithEveryIntegrator) {
+  for (const auto integrator :
+       {engine::IntegratorKind::kCordis, engine::IntegratorKind::kModal,
+        engine::IntegratorKind::kLeapfrog, engine::IntegratorKind::kSymplectic4,
+        engine::IntegratorKind::kImplicit}) {
+    NetworkDescription scene = string_1d(0.0, 0.0);
+    scene.integrator = integrator;
+    World world = make_world(scene);
+    const bool has_modes = integrator == engine::IntegratorKind::kModal;
+    for (int n = 0; n < 300; ++n) {
+      world.step();
+      double sum = 0.0;
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
+        if (scene.mats[i].kind == MatKind::kMass)
+          sum += 0.5 * scene.mats[i].mass * world.velocity(i).squaredNorm();
+      }
+      const double expected = has_modes ? world.energy().kinetic : sum;
+      ASSERT_NEAR(world.kinetic_energy(), expected, 1e-12 * world.energy().initial)
+          << to_string(integrator) << ", step " << n;
+      ASSERT_NEAR(world.kinetic_energy(), sum, 0.05 * world.energy().initial);
+    }
+    EXPECT_GT(world.kinetic_energy(), 0.0);
+  }
+}
+
 TEST(Energy, CountsTheFallIntoGravity) {
   NetworkDescription scene;
   scene.step = 0.01;

@@ -1,4 +1,5 @@
 // tests/sim/reach_watch_test.cpp -- a scene that goes beyond its certified reach.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -149,15 +150,15 @@ links:
   - {liaison: spring, between: [ground, key]}
 )");
   const engine::World& world = loaded->simulation.world();
-  ASSERT_FALSE(std::isinf(loaded->reach.pair_energy));
+  ASSERT_EQ(loaded->reach.pairs.size(), 1u);
   ASSERT_TRUE(std::isinf(loaded->reach.energy)) << "no link has such a law";
   plan::ReachLimit reach = loaded->reach;
   const double one = 0.5 * 0.001 * 0.1 * 0.1;
-  reach.pair_energy = 2.01 * one;
+  reach.pairs[0].energy = 2.01 * one;
   EXPECT_FALSE(plan::is_beyond(reach, world, world.energy()));
-  reach.pair_energy = 1.99 * one;
+  reach.pairs[0].energy = 1.99 * one;
   EXPECT_TRUE(plan::is_beyond(reach, world, world.energy()));
-  reach.pair_energy = loaded->reach.pair_energy;
+  reach.pairs = loaded->reach.pairs;
   reach.energy = 4.99 * one;
   EXPECT_TRUE(plan::is_beyond(reach, world, world.energy())) << "all five";
 }
@@ -178,7 +179,7 @@ Alone play_alone(const std::string& text, double duration_s) {
   while (simulation.simulated_s() < duration_s && !simulation.failed()) {
     if (!simulation.advance(simulation.steps_of_tick(), events)) break;
     if (simulation.tick_count() % loaded->ticks_per_frame > 0) continue;
-    const engine::Energy energy = loaded->energy.update(simulation.world());
+    const engine::Energy energy = loaded->sample_energy();
     seen.is_error_large = seen.is_error_large || is_error_large(energy);
     const PassedBound bound =
         loaded->passed_bound(signs_of(simulation.world(), energy, loaded->reach));
@@ -216,6 +217,66 @@ TEST(ReachWatch, LeavesASceneAloneThatStaysWithinIts) {
   EXPECT_EQ(seen.bound, PassedBound::kNone);
   EXPECT_FALSE(seen.is_error_large);
   EXPECT_EQ(seen.failure, "");
+}
+
+/// Balls of a crystal get more energy than the two fastest had at the start. The step is short enough for that.
+TEST(ReachWatch, LeavesACrystalAloneWhoseStepIsCertifiedForWhatItsBallsReach) {
+  const std::string crystal = R"yaml(cordis: 1
+name: crystal
+space: 3
+step: {rate_hz: <rate>}
+matter:
+  s: {kind: lattice, structure: fcc, counts: [2,2,2], corner_m: [0,0,0], spacing_m: <spacing>, mass_kg: 0.001, velocity_m_per_s: <velocity>}
+liaisons:
+  c: {elasticity: {kind: lennard_jones, depth_j: 1.0e-4, diameter_m: 0.01, cut_m: 0.025}}
+links: [{liaison: c, within: s}]
+)yaml";
+  const std::string thrown = test::filled(
+      crystal,
+      {{"rate", "4000"},
+       {"spacing", "0.0112"},
+       {"velocity", R"yaml(["0.3*sin(index)","0.3*cos(3*index)","0.3*sin(7*index)"])yaml"}});
+  const std::string pressed =
+      test::filled(crystal, {{"rate", "8000"}, {"spacing", "0.0098"}, {"velocity", "[0,0,0]"}});
+  for (const std::string& text : {thrown, pressed}) {
+    const Alone seen = play_alone(text, 5.0);
+    EXPECT_FALSE(seen.is_beyond_reach) << text;
+    EXPECT_EQ(seen.bound, PassedBound::kNone);
+    EXPECT_FALSE(seen.is_error_large);
+  }
+}
+
+/// A mass that falls into its spring, 40 steps up and down: in each frame it is where it began, at rest.
+TEST(ReachWatch, SeesTheEnergyOfAVibrationInStepWithTheFrames) {
+  constexpr double kPerStep = 2.0 * 3.14159265358979323846 / 40.0;
+  const double stiffness = 0.01 * 2.0 * (1.0 - std::cos(kPerStep)) * 1e6;  // K' = 2 (1 - cos w)
+  const auto loaded = loaded_scene_of(test::filled(R"(cordis: 1
+name: hanging
+space: 1
+step: {rate_hz: 1000, gesture_rate_hz: 1000}
+world: {gravity_m_per_s2: -9.81}
+liaisons: {k: {kind: spring, stiffness_n_per_m: <stiffness>, rest_m: 0}}
+matter:
+  a: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0}
+links: [{liaison: k, between: [a, m]}]
+)",
+                                                   {{"stiffness", std::to_string(stiffness)}}));
+  Simulation& simulation = loaded->simulation;
+  EventRoom events(64);
+  double in_frames = 0.0;
+  engine::Energy energy;
+  while (simulation.simulated_s() < 2.0) {
+    simulation.advance(simulation.steps_of_tick(), events);
+    if (simulation.tick_count() % loaded->ticks_per_frame > 0) continue;
+    energy = loaded->sample_energy();
+    in_frames = std::max(in_frames, energy.kinetic);
+  }
+  const double kinetic = 0.5 * std::pow(0.01 * 9.81, 2.0) / stiffness;  // (m g)^2 / 2 K
+  EXPECT_LT(in_frames, 0.02 * kinetic);
+  EXPECT_GT(energy.largest, 0.9 * kinetic);
+  EXPECT_LT(energy.largest, 2.2 * kinetic);
+  EXPECT_FALSE(is_error_large(energy));
 }
 
 TEST(ReachWatch, AnEnergyThatIsNoFiniteNumberIsADivergence) {

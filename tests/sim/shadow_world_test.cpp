@@ -74,6 +74,18 @@ TEST(ShadowWorld, SeesSetsAndStates) {
   expect_to_see_what_the_world_is(lattice_text());
 }
 
+TEST(ShadowWorld, KnowsTheKineticEnergyThatWasSeenBetweenItsCopies) {
+  const Simulation simulation(scene_of(swing_text()), kEpochOfSim);
+  ShadowWorld shadow(simulation.world().shared_network());
+  for (const double seen : {50.0, 20.0}) {
+    EXPECT_FALSE(shadow.read(0ms));
+    shadow.hand_over(simulation.world(), seen);
+    const std::optional<WorldFigures> figures = shadow.read(0ms);
+    ASSERT_TRUE(figures);
+    EXPECT_EQ(figures->energy.largest, 50.0);
+  }
+}
+
 TEST(ShadowWorld, WaitsForTheLoop) {
   Simulation simulation(scene_of(swing_text()), kEpochOfSim);
   ShadowWorld shadow(simulation.world().shared_network());

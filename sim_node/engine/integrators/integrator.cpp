@@ -18,6 +18,15 @@ Vec3 Integrator::velocity(const WorldState& world, std::uint32_t mat) const noex
   return world.mats.moved(mat) / world.network->step();
 }
 
+double Integrator::kinetic_energy(const WorldState& world) const noexcept {
+  double twice = 0.0;
+  for (std::uint32_t i = 0; i < world.mats.count(); ++i) {
+    if (world.mats.is_mass(i))
+      twice += world.description().mats[i].mass * velocity(world, i).squaredNorm();
+  }
+  return 0.5 * twice;
+}
+
 std::unique_ptr<Integrator> make_integrator(const NetworkDescription& network) {
   if (const auto refusal = refusal_of(network)) {
     throw std::invalid_argument(std::string("the integrator ") + to_string(network.integrator) +

@@ -37,6 +37,8 @@ class Integrator {
   virtual void adopt(WorldState&) noexcept {}
   /// Energies and account as World::energy promises them.
   virtual Energy energy(WorldState& world) const noexcept = 0;
+  /// Kinetic energy of all masses, from velocity(), or as energy() has it [J]. Real time: O(MATs), no allocation.
+  virtual double kinetic_energy(const WorldState& world) const noexcept;
   /// [m/s]
   virtual Vec3 velocity(const WorldState& world, std::uint32_t mat) const noexcept;
 

@@ -24,6 +24,9 @@ class ModalIntegrator final : public Integrator {
   void start(WorldState& world) noexcept override;
   Moved step(WorldState& world) noexcept override;
   Energy energy(WorldState& world) const noexcept override;
+  double kinetic_energy(const WorldState&) const noexcept override {
+    return block_.kinetic_energy();
+  }
   void show(WorldState& world, std::uint32_t mat) const noexcept override;
   void show_all(WorldState& world) const noexcept override;
 
