@@ -9,6 +9,7 @@
 
 #include "node/config/count_text.h"
 #include "sim_node/checks/settling.h"
+#include "sim_node/checks/stability_check.h"
 
 namespace cordis::cli {
 namespace {
@@ -108,10 +109,9 @@ std::string stability_text(const SceneCheck& check) {
                : fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n", rate);
   } else if (stability.uncertainty) {
     text = fmt::format(
-        "stability   not certain: {}: {};\n            energy and K' + 2 Z' are watched during "
+        "stability   not certain: {};\n            energy and K' + 2 Z' are watched during "
         "the run{}\n",
-        scene::call_liaison(check.scene, stability.uncertainty->liaison).name,
-        stability.uncertainty->why,
+        sim::uncertainty_text(check.scene, *stability.uncertainty),
         is_any_certain && check.rate_above(1.0 / certain) <= scene::kHighestStepRate
             ? fmt::format("; a rate_hz of {:.0f} is certain", check.rate_above(1.0 / certain))
             : "");

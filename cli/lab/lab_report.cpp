@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "node/config/count_text.h"
+#include "sim_node/checks/stability_check.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::cli {
@@ -98,9 +99,8 @@ std::string text_of(const LabReport& report) {
   for (const auto& [integrator, stability] : report.stability) {
     text += prediction_text(integrator, stability);
     if (!stability.uncertainty) continue;
-    text += fmt::format("            not certain: {}: {}\n",
-                        scene::call_liaison(scene, stability.uncertainty->liaison).name,
-                        stability.uncertainty->why);
+    text += fmt::format("            not certain: {}\n",
+                        sim::uncertainty_text(scene, *stability.uncertainty));
   }
   if (report.kept_runs > 0) {
     text += fmt::format(

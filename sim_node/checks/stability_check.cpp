@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/step_bound.h"
@@ -34,10 +35,6 @@ std::optional<plan::LiaisonId> liaison_without_largest_slope(const plan::Liaison
   return found;
 }
 
-std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty) {
-  return scene::call_liaison(scene, uncertainty.liaison).name + ": " + uncertainty.why;
-}
-
 /// Which rate is stable, or why none is certain.
 std::string rate_hint(const scene::Scene& scene, const plan::Stability& stability) {
   double step = stability.certified.step;
@@ -56,6 +53,18 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
 }
 
 }  // namespace
+
+std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty) {
+  std::string text = scene::call_liaison(scene, uncertainty.liaison).name + ": " + uncertainty.why;
+  const char* separator = ": ";
+  for (const std::uint32_t variable : uncertainty.variables) {
+    CORDIS_ASSERT(variable < scene.asked_variables.size());
+    const scene::AskedVariable& asked = scene.asked_variables[variable];
+    text += separator + ("'" + asked.name + "' (" + scene::place_text(asked.place)) + ")";
+    separator = ", ";
+  }
+  return text;
+}
 
 plan::Stability check_stability(const scene::Scene& scene, bool force, config::Problems& problems) {
   plan::Stability stability = plan::stability_of(scene.network, plan::liaison_graph(scene.network));

@@ -19,6 +19,10 @@ plan::Stability check_stability(const scene::Scene& scene, bool force, config::P
 void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,
                      config::Problems& problems);
 
+/// What keeps a scene from being certain, as a sentence: the liaison and the reason, and what its law asks for
+/// that nothing bounds, with the place in the file.
+std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty);
+
 /// Why a scene has diverged that did so at this MAT first: the strongest liaison at it, with its
 /// place, and how the sum of all there stands to the limit. Not in real time.
 std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat);

@@ -61,15 +61,15 @@ std::optional<std::uint32_t> bend_beside_dampers(const engine::NetworkDescriptio
 
 /// The first implicit damper that the energy of the start may turn by more than kMaxTurn in a step, at its length
 /// of the start or at rest.
-std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& network) {
+std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& network,
+                                           const LiaisonGraph& graph) {
   constexpr double kMaxTurn = 0.2;  // [rad]
   constexpr double kHeavy = 1.0;    // Z' from which on its direction matters
   if (network.dimension == 1 || !engine::damps_implicitly(network)) return {};
-  const Reach reach = reach_of(network);
   for (std::uint32_t index = 0; index < network.links.size(); ++index) {
     const engine::Link& link = network.links[index];
     if (link.viscosity == 0.0 || link.isotropic) continue;
-    const Reach here = reach_between(reach, network, {link.mat_a}, {link.mat_b});
+    const Reach here = reach_between(graph.reach, network, {link.mat_a}, {link.mat_b});
     if (link.viscosity * here.inverse_mass * network.step <= kHeavy) continue;
     double length = (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
     if (link.stiffness > 0.0 && link.rest_length > 0.0) length = std::min(length, link.rest_length);
@@ -224,7 +224,7 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         LiaisonId{LiaisonKind::kBend, *damped},
         "its viscosity has Z' above 0.3 beside implicit dampers, for which no limit is known"};
   }
-  if (const auto damper = damper_that_turns(network)) {
+  if (const auto damper = damper_that_turns(network, graph)) {
     return Uncertainty{*damper, "it may gain energy where it turns by more than 0.2 rad in a step"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);

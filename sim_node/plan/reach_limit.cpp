@@ -2,11 +2,14 @@
 #include "sim_node/plan/reach_limit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <variant>
 
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/stretch.h"
 
@@ -45,68 +48,211 @@ double energy_followed(const engine::StateMachine& state_machine, double rest_le
   return energy;
 }
 
-/// The least energy to which a law without a largest slope was followed.
-ReachLimit limit_at(const NetworkDescription& network, const LiaisonGraph& graph, double factor) {
-  const Reach reach = reach_of(network, factor);
+/// True if Lennard-Jones alone has no largest slope among the laws of a liaison: its slope depends on the energy
+/// with which two balls meet, and on nothing else.
+bool is_of_balls(const engine::StateMachine& state_machine) {
+  const auto is_free = [](const engine::Law& law) {
+    return std::holds_alternative<engine::Power>(law) ||
+           std::holds_alternative<engine::Expression>(law);
+  };
+  return std::ranges::none_of(state_machine.states, [&](const engine::LinkState& state) {
+    return is_free(state.elasticity) || is_free(state.dissipation);
+  });
+}
+
+/// The energy below which the slope of Lennard-Jones is not looked at [J].
+double deepest_well(const engine::StateMachine& state_machine) {
+  double depth = 0.0;
+  for (const engine::LinkState& state : state_machine.states) {
+    const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity);
+    if (balls != nullptr) depth = std::max(depth, balls->well_depth);
+  }
+  return depth;
+}
+
+/// The energies of the pairs of sets of balls, raised as far as the step of a graph is certified.
+class PairEnergies {
+ public:
+  PairEnergies(const NetworkDescription& network, const LiaisonGraph& graph)
+      : network_(network), graph_(graph) {
+    for (const ContactBound& contact : graph.contacts) {
+      const engine::SetLiaison& set = network.sets[contact.set];
+      const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+      if (contact.bounded || !contact.counted || !is_of_balls(state_machine)) continue;
+      if (!limits_.empty() && limits_.back().set == contact.set) continue;  // its other side
+      starts_.push_back(set_start_of(network, set, graph.reach));
+      limits_.push_back(
+          {contact.set, std::max(deepest_well(state_machine), starts_.back().reach.energy)});
+    }
+  }
+
+  /// All together, then one after the other; of too many all together alone.
+  const std::vector<PairLimit>& find() {
+    constexpr double kWork = 1e6;  // sets times what a bound goes through
+    std::vector<std::size_t> all;
+    for (std::size_t k = 0; k < limits_.size(); ++k) all.push_back(k);
+    if (all.empty()) return limits_;
+    raise(all);
+    if (all.size() == 1) return limits_;
+    double size = static_cast<double>(graph_.edges.size() + graph_.inverse_mass.size());
+    for (const ContactBound& contact : graph_.contacts)
+      size += static_cast<double>(contact.members.size());
+    if (size * static_cast<double>(all.size()) > kWork) return limits_;
+    for (const std::size_t k : all) raise({k});
+    return limits_;
+  }
+
+ private:
+  void raise(const std::vector<std::size_t>& group) {
+    constexpr double kStep = 4.0;
+    constexpr double kFinest = 1.05;
+    constexpr double kLargest = 1e6;
+    const std::vector<PairLimit> before = limits_;
+    const auto holds = [&](double factor) {
+      for (const std::size_t k : group) set_energy(k, factor * before[k].energy);
+      return is_certified(network_, graph_);
+    };
+    double low = 1.0;
+    while (low < kLargest && holds(kStep * low)) low *= kStep;
+    double high = kStep * low;
+    while (high > kFinest * low) {
+      const double middle = std::sqrt(low * high);
+      (holds(middle) ? low : high) = middle;
+    }
+    for (const std::size_t k : group) set_energy(k, low * before[k].energy);
+  }
+
+  void set_energy(std::size_t k, double energy) {
+    limits_[k].energy = starts_[k].reach.energy = energy;
+    const Slope slope = largest_slope_of(network_, network_.sets[limits_[k].set], starts_[k]);
+    for (ContactBound& contact : graph_.contacts) {
+      if (contact.set != limits_[k].set || !contact.counted) continue;
+      contact.stiffness = slope.stiffness;
+      contact.viscosity = slope.viscosity;
+      contact.variation = slope.variation;
+    }
+  }
+
+  const NetworkDescription& network_;
+  LiaisonGraph graph_;
+  std::vector<SetStart> starts_;  // of each limit
+  std::vector<PairLimit> limits_;
+};
+
+/// The energies to which laws without a largest slope were followed in a graph.
+ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph) {
   ReachLimit limit;
-  limit.speed = reach.speed;
+  limit.speed = graph.reach.speed;
   const bool turns = network.dimension > 1;
   for (const Edge& edge : graph.edges) {
     if (edge.bounded) continue;
     const engine::StateLink& link = network.state_links[edge.liaison.index];
-    const Reach here = reach_between(reach, network, {edge.mat_a}, {edge.mat_b});
+    const Reach here = reach_between(graph.reach, network, {edge.mat_a}, {edge.mat_b});
     limit.energy = std::min(
         limit.energy,
         energy_followed(network.state_machines[link.state_machine], link.rest_length, turns, here));
   }
+  limit.pairs = PairEnergies(network, graph).find();
   for (const ContactBound& contact : graph.contacts) {
-    if (contact.bounded) continue;
-    const Reach here = reach_between(reach, network, contact.members, contact.others);
     const engine::SetLiaison& set = network.sets[contact.set];
-    limit.pair_energy =
-        std::min(limit.pair_energy, energy_followed(network.state_machines[set.state_machine],
-                                                    std::max(set.rest_length, 0.0), turns, here));
+    const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+    if (contact.bounded || is_of_balls(state_machine)) continue;
+    const Reach here = reach_between(graph.reach, network, contact.members, contact.others);
+    const double energy =
+        energy_followed(state_machine, std::max(set.rest_length, 0.0), turns, here);
+    if (limit.pairs.empty() || limit.pairs.back().set != contact.set)
+      limit.pairs.push_back({contact.set, energy});
+    limit.pairs.back().energy = std::min(limit.pairs.back().energy, energy);
   }
   return limit;
+}
+
+/// The two largest of some values.
+struct TwoLargest {
+  double first = 0.0;
+  double second = 0.0;
+
+  void add(double value) noexcept {
+    second = std::max(second, std::min(first, value));
+    first = std::max(first, value);
+  }
+  double sum() const noexcept { return first + second; }
+};
+
+/// How fast MATs are.
+struct Motion {
+  TwoLargest kinetic;     // energies [J]
+  TwoLargest speed;       // [m/s]
+  double heaviest = 0.0;  // [kg]; infinite where one is no mass
+  bool has_port = false;
+};
+
+Motion motion_of(const engine::World& world, const std::vector<std::uint32_t>& mats) noexcept {
+  Motion motion;
+  for (const std::uint32_t index : mats) {
+    const engine::Mat& mat = world.network().description().mats[index];
+    motion.has_port = motion.has_port || mat.kind == engine::MatKind::kPort;
+    if (mat.kind != engine::MatKind::kMass) {
+      motion.heaviest = std::numeric_limits<double>::infinity();
+      continue;
+    }
+    const double square = world.velocity(index).squaredNorm();
+    motion.kinetic.add(0.5 * mat.mass * square);
+    motion.speed.add(std::sqrt(square));
+    motion.heaviest = std::max(motion.heaviest, mat.mass);
+  }
+  return motion;
 }
 
 }  // namespace
 
 ReachLimit reach_limit(const NetworkDescription& network) {
   constexpr double kStep = 4.0;
+  constexpr double kFinest = 1.1;
   constexpr double kLargest = 1e6;
   LiaisonGraph graph = liaison_graph(network);
   if (graph.bounded) return {};
   if (!is_certified(network, graph)) return {};
-  double factor = 1.0;
-  while (factor < kLargest) {
-    LiaisonGraph wider = liaison_graph(network, kStep * factor);
-    if (!is_certified(network, wider)) break;
-    factor *= kStep;
+  const auto holds = [&](double factor) {
+    LiaisonGraph wider = liaison_graph(network, factor);
+    if (!is_certified(network, wider)) return false;
     graph = std::move(wider);
+    return true;
+  };
+  double low = 1.0;
+  while (low < kLargest && holds(kStep * low)) low *= kStep;
+  double high = low < kLargest ? kStep * low : low;
+  while (high > kFinest * low) {
+    const double middle = std::sqrt(low * high);
+    (holds(middle) ? low : high) = middle;
   }
-  return limit_at(network, graph, factor);
+  return limit_of(network, graph);
+}
+
+double pair_energy(const engine::World& world, const engine::SetLiaison& set) noexcept {
+  const Motion p = motion_of(world, set.set_p);
+  const bool is_within = set.set_q.empty();
+  const Motion q = is_within ? p : motion_of(world, set.set_q);
+  const double kinetic = is_within ? p.kinetic.sum() : p.kinetic.first + q.kinetic.first;
+  if (p.has_port || q.has_port) return kinetic;
+  const double speed = is_within ? p.speed.sum() : p.speed.first + q.speed.first;
+  const double reduced_mass = 1.0 / (1.0 / p.heaviest + 1.0 / q.heaviest);
+  return std::min(kinetic, 0.5 * reduced_mass * speed * speed);
 }
 
 bool is_beyond(const ReachLimit& limit, const engine::World& world,
                const engine::Energy& energy) noexcept {
   if (limit.is_infinite()) return false;
-  double most = 0.0;  // kinetic energies of the two MATs that have the most [J]
-  double second = 0.0;
-  const auto& mats = world.network().description().mats;
-  for (std::uint32_t i = 0; i < mats.size(); ++i) {
-    if (mats[i].kind == engine::MatKind::kFixed) continue;
-    const double square = world.velocity(i).squaredNorm();
-    if (mats[i].kind == engine::MatKind::kPort) {
-      if (!(square <= limit.speed * limit.speed)) return true;
-      continue;
-    }
-    const double kinetic = 0.5 * mats[i].mass * square;
-    second = std::max(second, std::min(most, kinetic));
-    most = std::max(most, kinetic);
+  const engine::NetworkDescription& network = world.network().description();
+  for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+    if (network.mats[i].kind != engine::MatKind::kPort) continue;
+    if (!(world.velocity(i).norm() <= limit.speed)) return true;
   }
   const double whole = energy.kinetic + std::max(energy.elastic, 0.0);
-  return !(whole <= limit.energy && most + second <= limit.pair_energy);
+  if (!(whole <= limit.energy)) return true;
+  return std::ranges::any_of(limit.pairs, [&](const PairLimit& pair) {
+    return !(pair_energy(world, network.sets[pair.set]) <= pair.energy);
+  });
 }
 
 }  // namespace cordis::plan

@@ -1,13 +1,20 @@
 // sim_node/plan/reach_limit.h -- the energy and speed up to which a step is certified.
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/world.h"
 
 namespace cordis::plan {
+
+/// The energy up to which a step is certified for a set that has a law without a largest slope.
+struct PairLimit {
+  std::uint32_t set = 0;  ///< index in NetworkDescription::sets
+  double energy = 0.0;    ///< energy of the motion of two of its MATs against each other [J]
+};
 
 /// Up to which the step of a network is certified where laws have no largest slope.
 struct ReachLimit {
@@ -16,21 +23,27 @@ struct ReachLimit {
   /// The kinetic and the stored energy of the whole scene [J]; infinite where every such law belongs
   /// to a set.
   double energy = std::numeric_limits<double>::infinity();
-  /// The kinetic energy of the two MATs of a pair of a set [J]; infinite where no set has such a law.
-  double pair_energy = std::numeric_limits<double>::infinity();
+  std::vector<PairLimit> pairs;  ///< one for each set with such a law
 
   bool is_infinite() const noexcept {
-    return std::min(energy, pair_energy) == std::numeric_limits<double>::infinity();
+    return energy == std::numeric_limits<double>::infinity() && pairs.empty();
   }
 };
 
-/// The Reach of the start, its energies raised by up to a million as long as the step is certified.
-/// Infinite where every law has a largest slope, and where the step is not certified. O(liaisons).
+/// The Reach of the start, its energies raised by up to a million as long as the step is certified, to
+/// a tenth. Where Lennard-Jones alone has no largest slope in a set, the energy of its pairs is raised
+/// further: of all such sets together, then of one after the other. Infinite where every law has a
+/// largest slope, and where the step is not certified. O(liaisons), and O(liaisons) for each set.
 ReachLimit reach_limit(const engine::NetworkDescription& network);
 
-/// True if a port moves faster, or the scene has more energy, than the step is certified for. Of a
-/// pair of a set, the two MATs of most kinetic energy count; its stored energy does not, and shows
-/// when the pair parts. Real time: O(MATs), no allocation.
+/// The most energy that the motion of two MATs of a set against each other has [J]. Of any two it is at
+/// most their kinetic energy, and half the reduced mass times the sum of their speeds squared. Ports have
+/// no kinetic energy. Real time: O(members), no allocation.
+double pair_energy(const engine::World& world, const engine::SetLiaison& set) noexcept;
+
+/// True if a port moves faster, or the scene has more energy, than the step is certified for. Of the
+/// pairs of a set, pair_energy() counts; what a pair stores does not, and shows when it parts. Real
+/// time: O(MATs + members of sets), no allocation.
 /// @param energy  of the world now
 bool is_beyond(const ReachLimit& limit, const engine::World& world,
                const engine::Energy& energy) noexcept;

@@ -145,6 +145,12 @@ struct Subspace {
 /// No scene is stepped at a higher rate [Hz].
 inline constexpr double kHighestStepRate = 1.0e6;
 
+/// What a condition or a law asks for outside its link, as the file names it.
+struct AskedVariable {
+  std::string name;
+  config::Place place;  ///< where it is asked for first
+};
+
 /// A scene as it was read.
 struct Scene {
   std::string name;
@@ -156,8 +162,9 @@ struct Scene {
   std::optional<Accuracy> accuracy;
   double gesture_rate_hz = 0.0;  ///< exchanges with a device per second
   double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
-  engine::NetworkDescription network;  ///< its dimension is the `space` of the file
-  bool gravity_changes = false;        ///< gravity follows formulas of time: forces, not `gravity`
+  engine::NetworkDescription network;          ///< its dimension is the `space` of the file
+  std::vector<AskedVariable> asked_variables;  ///< per variable of the network
+  bool gravity_changes = false;  ///< gravity follows formulas of time: forces, not `gravity`
   bool medium_flows = false;
   std::vector<NamedRange> matter;  ///< names of MATs in the order of the indices; a port has one
                                    ///< MAT

@@ -249,6 +249,39 @@ links:
   EXPECT_EQ(out_.find("no step is too long"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, WhatNothingBoundsIsNamedWithItsPlace) {
+  const auto of_law = [&](const std::string& law) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: led
+space: 1
+step: {rate_hz: 1000}
+matter:
+  a: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+signals: {far: {of: m, quantity: position}}
+liaisons:
+  c: {elasticity: '<law>', rest_m: 0}
+links: [{liaison: c, between: [a, m]}]
+)",
+                                         {{"law", law}});
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    return std::pair(out_, error_);
+  };
+  const std::string place = path_ + ":10)";
+  for (const auto& [law, name] :
+       {std::pair("100 * far * elongation_m", "far"), std::pair("time_s * elongation_m", "time_s"),
+        std::pair("m.speed_m_per_s * sin(time_s) * elongation_m", "m.speed_m_per_s"),
+        std::pair("min(far, 1) * elongation_m", "far")}) {
+    const auto& [out, error] = of_law(law);
+    const std::string named = ": '" + std::string(name) + "' (" + place;
+    EXPECT_NE(out.find(named + ";"), std::string::npos) << law << "\n" << out;
+    EXPECT_NE(error.find(named + "\n"), std::string::npos) << law << "\n" << error;
+  }
+  const auto& [out, error] = of_law("(m.speed_m_per_s + time_s) * elongation_m");
+  EXPECT_NE(out.find("'m.speed_m_per_s' (" + place + ", 'time_s' (" + place), std::string::npos)
+      << out;
+}
+
 TEST_F(Checked, AFlowThatALawHasToHoldIsNoCertainStep) {
   const auto in_flow = [&](const std::string& speed) {
     std::ofstream(path_) << test::filled(R"(cordis: 1

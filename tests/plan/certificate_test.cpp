@@ -336,6 +336,15 @@ TEST(Certificate, IsNotGivenToHeavyDampersThatTurnFarInAStep) {
   EXPECT_FALSE(stability_at_start(pair_that_turns(0.8, 10.0)).uncertainty.has_value());  // Z' = 0.2
 }
 
+/// What is certain at a step is found for many steps, and the reach for one graph.
+TEST(Certificate, OfDampersThatTurnTakesTheReachOfItsGraph) {
+  const NetworkDescription slow = pair_that_turns(0.1, 1e3);
+  EXPECT_FALSE(plan::uncertainty_of(slow, plan::liaison_graph(slow)));
+  const auto wider = plan::uncertainty_of(slow, plan::liaison_graph(slow, 100.0));
+  ASSERT_TRUE(wider) << "10 times as fast";
+  EXPECT_NE(wider->why.find("0.2 rad"), std::string::npos) << wider->why;
+}
+
 TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {
   NetworkDescription scene;
   scene.dimension = 2;

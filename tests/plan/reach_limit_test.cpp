@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/step_bound.h"
 #include "tests/plan/networks.h"
 
 namespace cordis::test {
@@ -32,26 +34,24 @@ World in_flight() {
   return world;
 }
 
-TEST(ReachLimit, IsPassedByEnergySpeedOrTheTwoMatsOfMostEnergy) {
+TEST(ReachLimit, IsPassedByEnergyAndSpeed) {
   const World world = in_flight();
   const engine::Energy energy = world.energy();
   ASSERT_NEAR(energy.kinetic, 14.0, 1e-9);
-  EXPECT_FALSE(is_beyond({.energy = 14.1}, world, energy));
-  EXPECT_TRUE(is_beyond({.energy = 13.9}, world, energy));
-  EXPECT_FALSE(is_beyond({.pair_energy = 13.1}, world, energy)) << "9 and 4 J";
-  EXPECT_TRUE(is_beyond({.pair_energy = 12.9}, world, energy));
-  EXPECT_FALSE(is_beyond({.speed = 1.01, .energy = 20.0}, world, energy));
-  EXPECT_TRUE(is_beyond({.speed = 0.99, .energy = 20.0}, world, energy)) << "the port";
+  EXPECT_FALSE(is_beyond({.energy = 14.1, .pairs = {}}, world, energy));
+  EXPECT_TRUE(is_beyond({.energy = 13.9, .pairs = {}}, world, energy));
+  EXPECT_FALSE(is_beyond({.speed = 1.01, .energy = 20.0, .pairs = {}}, world, energy));
+  EXPECT_TRUE(is_beyond({.speed = 0.99, .energy = 20.0, .pairs = {}}, world, energy)) << "the port";
 }
 
 TEST(ReachLimit, CountsStoredEnergyForTheWholeSceneAndNoneBelowNothing) {
   const World world = in_flight();
   engine::Energy energy = world.energy();
   energy.elastic = 5.0;
-  EXPECT_TRUE(is_beyond({.energy = 18.9}, world, energy));
-  EXPECT_FALSE(is_beyond({.energy = 19.1}, world, energy));
+  EXPECT_TRUE(is_beyond({.energy = 18.9, .pairs = {}}, world, energy));
+  EXPECT_FALSE(is_beyond({.energy = 19.1, .pairs = {}}, world, energy));
   energy.elastic = -5.0;
-  EXPECT_TRUE(is_beyond({.energy = 13.9}, world, energy)) << "14 J of motion";
+  EXPECT_TRUE(is_beyond({.energy = 13.9, .pairs = {}}, world, energy)) << "14 J of motion";
 }
 
 TEST(ReachLimit, IsNeverPassedWhereThereIsNone) {
@@ -60,14 +60,18 @@ TEST(ReachLimit, IsNeverPassedWhereThereIsNone) {
   energy.kinetic = 1e300;
   EXPECT_TRUE(ReachLimit{}.is_infinite());
   EXPECT_FALSE(is_beyond(ReachLimit{}, world, energy));
-  EXPECT_FALSE(is_beyond({.speed = 0.1}, world, energy)) << "a speed alone certifies nothing";
+  EXPECT_FALSE(is_beyond({.speed = 0.1, .pairs = {}}, world, energy))
+      << "a speed alone certifies nothing";
 }
 
-TEST(ReachLimit, OfASetIsTheEnergyOfAPair) {
+constexpr double kDepth = 0.01;  // [J]
+
+/// Three balls of Lennard-Jones in a row, at rest.
+NetworkDescription balls_at_rest() {
   NetworkDescription scene;
   scene.dimension = 2;
   scene.step = 1e-4;
-  scene.state_machines.push_back(state_machine(0.0, engine::LennardJones{0.01, 0.1, 0.3}));
+  scene.state_machines.push_back(state_machine(0.0, engine::LennardJones{kDepth, 0.1, 0.3}));
   engine::SetLiaison set;
   for (std::uint32_t i = 0; i < 3; ++i) {
     set.set_p.push_back(i);
@@ -75,11 +79,89 @@ TEST(ReachLimit, OfASetIsTheEnergyOfAPair) {
   }
   set.range = 0.3;
   scene.sets.push_back(set);
-  const ReachLimit limit = plan::reach_limit(scene);
+  return scene;
+}
+
+TEST(ReachLimit, OfASetIsTheEnergyOfAPair) {
+  const ReachLimit limit = plan::reach_limit(balls_at_rest());
   EXPECT_FALSE(limit.is_infinite());
-  EXPECT_TRUE(std::isfinite(limit.pair_energy));
-  EXPECT_GT(limit.pair_energy, 0.0);
+  ASSERT_EQ(limit.pairs.size(), 1u);
+  EXPECT_EQ(limit.pairs[0].set, 0u);
   EXPECT_TRUE(std::isinf(limit.energy)) << "no link has such a law";
+}
+
+/// The slope of a pair that meets with the energy E, in depths: 4 (156 u^(7/3) - 42 u^(4/3)) depths per diameter
+/// squared, u = (1 + sqrt(1 + E)) / 2.
+double slope_at(double energy) {
+  const double u = 0.5 * (1.0 + std::sqrt(1.0 + energy / kDepth));
+  return 4.0 * (156.0 * std::pow(u, 7.0 / 3.0) - 42.0 * std::pow(u, 4.0 / 3.0)) * kDepth / 0.01;
+}
+
+double longest_certain_step(const NetworkDescription& scene) {
+  const plan::LiaisonGraph graph = plan::liaison_graph(scene);
+  return plan::certain_step_of(scene, graph, plan::stability_of(scene, graph));
+}
+
+/// What has no energy at the start gets some by falling into wells: the limit is that of the step.
+TEST(ReachLimit, OfASetAtRestIsThatOfItsStep) {
+  NetworkDescription scene = balls_at_rest();
+  const double stable = plan::certified_bound(scene, plan::liaison_graph(scene)).step;
+  // Each ball has two partners: K' of a vibration is 4 part^2, and of a pair half of that. Certain is a product of 1.
+  for (const double part : {0.5, 0.25}) {
+    scene.step = part * stable;
+    const double energy = plan::reach_limit(scene).pairs.at(0).energy;
+    const double slope = slope_at(energy) / slope_at(kDepth);
+    const double most = 1.0 / (std::sqrt(8.0) * part * part);
+    EXPECT_LE(slope, most * (1.0 + 1e-9)) << part;
+    EXPECT_GT(slope, 0.95 * most) << part << ": to 1.05 of the energy";
+  }
+  scene.step = 0.999 * longest_certain_step(scene);
+  EXPECT_LT(plan::reach_limit(scene).pairs.at(0).energy, 1.1 * kDepth);
+}
+
+/// A light ball among heavy ones limits the step, and not the energy of the heavy ones among themselves.
+TEST(ReachLimit, OfOneSetIsNotThatOfAnother) {
+  NetworkDescription scene = balls_at_rest();
+  scene.mats.push_back(mass(0.001, Vec3(0, 0.11225, 0)));
+  scene.sets.push_back(scene.sets[0]);
+  scene.sets[1].set_q = {3};
+  scene.step = 0.9 * longest_certain_step(scene);
+  const ReachLimit limit = plan::reach_limit(scene);
+  ASSERT_EQ(limit.pairs.size(), 2u);
+  EXPECT_GT(limit.pairs[0].energy, 100.0 * kDepth);
+  EXPECT_LT(limit.pairs[1].energy, 4.0 * kDepth);
+}
+
+/// Balls of 2 kg at 3, 2 and 1 m/s, and one of 0.02 kg.
+TEST(ReachLimit, CountsTheMotionOfTwoMatsAgainstEachOther) {
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.step = 1e-3;
+  for (const double speed : {3.0, 2.0, 1.0, 5.0}) {
+    scene.mats.push_back(mass(speed == 5.0 ? 0.02 : 2.0, Vec3(0, speed, 0)));
+    scene.mats.back().velocity = Vec3(speed, 0, 0);
+  }
+  World world = make_world(scene);
+  world.step();
+  engine::SetLiaison set;
+  set.set_p = {0, 1, 2};
+  EXPECT_NEAR(plan::pair_energy(world, set), 12.5, 1e-9) << "0.5 * 1 kg * (5 m/s)^2, not 9 + 4 J";
+  set.set_p = {0, 1};
+  set.set_q = {3};
+  const double reduced = 2.0 * 0.02 / 2.02;
+  EXPECT_NEAR(plan::pair_energy(world, set), 0.5 * reduced * 64.0, 1e-9);
+}
+
+TEST(ReachLimit, OfEachSetIsHeldAgainstItsOwnMembers) {
+  NetworkDescription scene = balls_at_rest();
+  scene.sets.push_back(scene.sets[0]);
+  scene.sets[1].set_p = {0, 1};
+  scene.mats[2].velocity = Vec3(0, 1, 0);  // 0.5 * 0.05 kg * (1 m/s)^2
+  World world = make_world(scene);
+  const engine::Energy energy = world.energy();
+  EXPECT_TRUE(is_beyond({.pairs = {{0, 0.0249}}}, world, energy));
+  EXPECT_FALSE(is_beyond({.pairs = {{0, 0.0251}}}, world, energy));
+  EXPECT_FALSE(is_beyond({.pairs = {{1, 0.0249}}}, world, energy));
 }
 
 }  // namespace

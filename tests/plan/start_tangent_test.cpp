@@ -158,6 +158,34 @@ TEST(StartTangent, IsNotSureOfWhatALawDrivesBesideImplicitDampers) {
   EXPECT_LT(StartTangent(scene).diverging_step(), scene.step);
 }
 
+/// One mass on a spring or a damper among many that a law drives away: nearly every direction falls.
+NetworkDescription one_among_many(double stiffness, double viscosity,
+                                  const engine::LinkState& drives) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(1, 0, 0))};
+  scene.links = {{0, 1, stiffness, viscosity, 1.0}};
+  scene.state_machines.emplace_back();
+  scene.state_machines[0].states = {drives};
+  for (std::uint32_t i = 2; i < 40; ++i) {
+    scene.mats.push_back(mass(1.0, Vec3(1, 0, 0)));
+    scene.state_links.push_back({0, i, 0, 1.0});
+  }
+  return scene;
+}
+
+TEST(StartTangent, FindsTheOneDirectionThatIsStiff) {
+  engine::LinkState falling;
+  falling.elasticity = engine::Table({-1.0, 0.0, 1.0}, {400.0, 0.0, -400.0});
+  const double stiff = 0.2;  // dt^2 100 = 4
+  EXPECT_NEAR(StartTangent(one_among_many(100.0, 0.0, falling)).diverging_step(), stiff, 1e-6);
+  const double viscous = 0.2;  // 2 dt 10 = 4
+  EXPECT_NEAR(StartTangent(one_among_many(0.0, 10.0, driving(40.0))).diverging_step(), viscous,
+              1e-6);
+  EXPECT_TRUE(std::isinf(StartTangent(one_among_many(0.0, 0.0, falling)).diverging_step()));
+}
+
 TEST(StartTangent, CountsTheFallOfALawThatJustTouches) {
   engine::LinkState falling;
   falling.elasticity = engine::Table({-1.0, 0.0, 1.0}, {40.0, 0.0, 3.0});

@@ -14,6 +14,7 @@
 
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/partner_bound.h"
+#include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
 
@@ -21,12 +22,6 @@ namespace cordis::plan {
 namespace {
 
 using engine::NetworkDescription;
-
-double smallest_radius(const NetworkDescription& network, const std::vector<std::uint32_t>& mats) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const std::uint32_t mat : mats) smallest = std::min(smallest, radius_of(network, mat));
-  return smallest;
-}
 
 /// The largest slope of Lennard-Jones from its touch distance to its cutoff, along or across [N/m].
 double slope_beyond(const engine::LennardJones& law, double touch, double range) {
@@ -56,18 +51,60 @@ bool turns_without_limit(const NetworkDescription& network, const engine::Maxwel
   return link.start_force > link.stiffness * along.norm();
 }
 
-void note(const Slope& slope, LiaisonId liaison, LiaisonGraph& graph) {
-  graph.bounded = graph.bounded && slope.bounded;
-  if (slope.uncertainty != nullptr && !graph.uncertainty)
-    graph.uncertainty = {liaison, slope.uncertainty};
+/// True if the value of a law has no bound because of one of its variables, though all others are at most 1.
+bool is_unbounded_by(const engine::Program& program, std::uint32_t variable,
+                     const std::vector<Interval>& ranges) {
+  std::vector<Interval> narrow = ranges;
+  for (Interval& range : narrow)
+    range = {std::clamp(-1.0, range.low, range.high), std::clamp(1.0, range.low, range.high)};
+  narrow[variable] = ranges[variable];
+  LinkBox box;
+  box.distance = box.mass_a = box.mass_b = {0.0, 1.0};
+  box.speed = {-1.0, 1.0};
+  box.variables = &narrow;
+  const Interval value = values_of(program, box);
+  return !std::isfinite(value.low) || !std::isfinite(value.high);
 }
 
-/// The stiffness across a liaison at one point of its start [N/m]: its tension over its length. The largest
-/// slope of one with several states has none, because exits end a state that pulls before the ends meet.
-double stiffness_across_at(const engine::StateMachine& state_machine, int dimension,
-                           const engine::LawPoint& start) {
-  if (dimension == 1 || state_machine.is_stateless() || start.distance <= 0.0) return 0.0;
-  return tension_at_start(state_machine, start) / start.distance;
+/// What the laws of a state machine ask for and nothing bounds; where each alone is harmless, all of it.
+std::vector<std::uint32_t> unbounded_variables(const engine::StateMachine& state_machine,
+                                               const std::vector<Interval>& ranges) {
+  std::vector<std::uint32_t> asked;
+  std::vector<std::uint32_t> unbounded;
+  const auto read = [&](const engine::Law& law) {
+    const auto* expression = std::get_if<engine::Expression>(&law);
+    if (expression == nullptr) return;
+    for (const engine::Instruction& instruction : expression->program.code) {
+      const std::uint32_t variable = instruction.slot;
+      if (instruction.operation != engine::Operation::kVariable) continue;
+      if (std::ranges::find(asked, variable) != asked.end()) continue;
+      asked.push_back(variable);
+      if (is_unbounded_by(expression->program, variable, ranges)) unbounded.push_back(variable);
+    }
+  };
+  for (const engine::LinkState& state : state_machine.states) {
+    read(state.elasticity);
+    read(state.dissipation);
+  }
+  return unbounded.empty() ? asked : unbounded;
+}
+
+std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network, LiaisonId liaison,
+                                               const Reach& reach) {
+  const std::uint32_t state_machine = liaison.kind == LiaisonKind::kSet
+                                          ? network.sets[liaison.index].state_machine
+                                          : network.state_links[liaison.index].state_machine;
+  return unbounded_variables(network.state_machines[state_machine], *reach.variables);
+}
+
+/// Precondition: the liaison has states or is of sets.
+void note(const NetworkDescription& network, const Slope& slope, LiaisonId liaison,
+          LiaisonGraph& graph) {
+  graph.bounded = graph.bounded && slope.bounded;
+  if (slope.uncertainty == nullptr || graph.uncertainty) return;
+  graph.uncertainty = {liaison, slope.uncertainty};
+  if (is_of_variables(slope.uncertainty))
+    graph.uncertainty->variables = unbounded_variables(network, liaison, graph.reach);
 }
 
 /// One side of a set: its touching pairs, and those beyond.
@@ -143,33 +180,6 @@ bool is_confined(const engine::StateMachine& state_machine, double rest_length, 
          });
 }
 
-/// The largest distance from a surface at which its normal flips [m]: 0 where edges meet, the middle of
-/// what has none, -infinity for a plane with one side.
-double flips_at(const engine::Surface& surface, int dimension) {
-  const engine::Vec3& half = surface.half_size;
-  switch (surface.kind) {
-    case engine::SurfaceKind::kPlane:
-      return surface.both_sides ? 0.0 : -std::numeric_limits<double>::infinity();
-    case engine::SurfaceKind::kBox: {
-      const auto ends = half.head(dimension).array().isFinite();
-      return ends.count() == 1 ? -half.head(dimension).minCoeff() : 0.0;
-    }
-    case engine::SurfaceKind::kCylinder:
-      return std::isinf(half[1]) ? -half[0] : 0.0;
-    case engine::SurfaceKind::kSegment:
-      return 0.0;
-  }
-  return 0.0;
-}
-
-double flips_at(const NetworkDescription& network, const engine::SetLiaison& set) {
-  double largest = -std::numeric_limits<double>::infinity();
-  for (const std::uint32_t mat : set.set_p) {
-    largest = std::max(largest, flips_at(*engine::surface_of(network, mat), network.dimension));
-  }
-  return largest;
-}
-
 /// The least rest length of a pair that has one [m]; 0: none has.
 double shortest_rest(const NetworkDescription& network, const engine::SetLiaison& set) {
   if (set.rest_length >= 0.0) return set.rest_length;
@@ -184,17 +194,6 @@ double shortest_rest(const NetworkDescription& network, const engine::SetLiaison
     }
   }
   return std::isfinite(least) ? least : 0.0;
-}
-
-/// The longest rest length of a pair [m].
-double longest_rest(const NetworkDescription& network, const engine::SetLiaison& set) {
-  if (set.rest_length >= 0.0) return set.rest_length;
-  const auto largest_of = [&](const std::vector<std::uint32_t>& mats) {
-    double largest = 0.0;
-    for (const std::uint32_t mat : mats) largest = std::max(largest, radius_of(network, mat));
-    return largest;
-  };
-  return largest_of(set.set_p) + largest_of(set.set_q.empty() ? set.set_p : set.set_q);
 }
 
 /// What brings a pair of a set so far inwards that it turns about [J].
@@ -213,65 +212,29 @@ double energy_of_turning(const NetworkDescription& network, const engine::SetLia
 double add_set(const NetworkDescription& network, std::uint32_t index, const Reach& reach,
                LiaisonGraph& graph) {
   const engine::SetLiaison& set = network.sets[index];
-  const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
-  const double rest = set.rest_length >= 0.0
-                          ? set.rest_length
-                          : smallest_radius(network, set.set_p) + smallest_radius(network, others);
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
-  Reach here = reach_between(reach, network, set.set_p, others);
-  const StartPairs near(network, set);
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
-  double stored = 0.0;  // in the pair that stores the most
-  double in_all = 0.0;
-  double across = 0.0;
-  double nearest = set.range;
-  // Pairs that come into range begin there.
-  const double longest = longest_rest(network, set);
-  here.begins = near.are_kept() ? Interval{set.range - longest, set.range - rest} : kAnyNumber;
-  here.rests_differ = longest > rest;
-  for (const StartPair& pair : near.pairs()) {
-    const engine::LawPoint start = start_point(network, set, pair);
-    const double in_pair = stored_in(state_machine, start);
-    stored = std::max(stored, in_pair);
-    in_all += in_pair;
-    nearest = std::min(nearest, pair.distance);
-    here.begins.low = std::min(here.begins.low, start.elongation);
-    here.begins.high = std::max(here.begins.high, start.elongation);
-    if (!on_surfaces)
-      across = std::max(across, stiffness_across_at(state_machine, network.dimension, start));
-  }
-  const auto& law = state_machine.states[state_machine.start].elasticity;
-  const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
-  const double fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, rest, here);
-  here.energy += stored;
-  here.brought += stored + (std::isfinite(fall) ? fall : 0.0);
-  here.range = set.range;
-  Slope slope = on_surfaces
-                    ? largest_slope_at_surfaces(state_machine, rest, flips_at(network, set), here)
-                    : largest_slope(state_machine, rest, network.dimension, here);
-  slope.stiffness = std::max(slope.stiffness, across);
-  slope = with_friction(slope, state_machine);
-  if (!slope.bounded && !std::isfinite(fall) && slope.uncertainty == nullptr)
+  const SetStart start = set_start_of(network, set, reach);
+  Slope slope = largest_slope_of(network, set, start);
+  if (!slope.bounded && !std::isfinite(start.fall) && slope.uncertainty == nullptr)
     slope.uncertainty = kFallsWithoutEnd;
   if (network.dimension == 1 && !on_surfaces && slope.uncertainty == nullptr &&
-      pull_jumps_where_pairs_pass(state_machine, rest, slope, here))
+      pull_jumps_where_pairs_pass(state_machine, start.rest_length, slope, start.reach))
     slope.uncertainty = "it pulls where its ends pass each other, and jumps there";
-  note(slope, {LiaisonKind::kSet, index}, graph);
-  const std::size_t count_p = set.set_p.size();
-  const std::size_t all =
-      set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
-  const bool all_begin_within = near.are_kept() && near.pairs().size() == all;
+  note(network, slope, {LiaisonKind::kSet, index}, graph);
   if (!graph.uncertainty &&
-      !(all_begin_within && is_confined(state_machine, rest, set.range, here)) &&
-      jumps_at_range(state_machine, rest, set.range, on_surfaces ? 1 : network.dimension, here,
-                     on_surfaces))
+      !(start.all_begin_within &&
+        is_confined(state_machine, start.rest_length, set.range, start.reach)) &&
+      jumps_at_range(state_machine, start.rest_length, set.range,
+                     on_surfaces ? 1 : network.dimension, start.reach, on_surfaces))
     graph.uncertainty = {{LiaisonKind::kSet, index}, "its force jumps at its range"};
   const PartnerBounds bounds = partner_bounds(network, set);
   add_side(network, index, slope, bounds, /*of_p=*/true, graph);
   if (!set.set_q.empty()) add_side(network, index, slope, bounds, /*of_p=*/false, graph);
-  if (!near.are_kept()) return std::numeric_limits<double>::infinity();
-  if (!std::isfinite(fall)) return in_all;
-  return in_all + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+  if (!start.is_known) return std::numeric_limits<double>::infinity();
+  if (!std::isfinite(start.fall)) return start.stored;
+  return start.stored +
+         start.fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
 }
 
 /// Adds the sets to what turns about, and to the energy there is for it what they store.
@@ -403,7 +366,8 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     graph.edges.push_back(
         {link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index++}});
   }
-  const Reach reach = reach_of(network, reach_factor);
+  graph.reach = reach_of(network, reach_factor);
+  const Reach& reach = graph.reach;
   index = 0;
   SlopesOfLinks slopes(network, reach);
   for (const engine::StateLink& link : network.state_links) {
@@ -414,7 +378,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         std::max(slope.stiffness, stiffness_across_at(machine, network.dimension, start));
     if (network.dimension == 1 && slope.uncertainty == nullptr)
       slope.uncertainty = jumps_from_behind(machine, start);
-    note(slope, {LiaisonKind::kStateLink, index}, graph);
+    note(network, slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,
                            slope.stiffness,
@@ -442,7 +406,8 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
   }
   if (reach.fed && !graph.bounded && !graph.uncertainty) {
-    graph.uncertainty = {{LiaisonKind::kStateLink, *reach.fed}, kFed};
+    const LiaisonId fed{LiaisonKind::kStateLink, *reach.fed};
+    graph.uncertainty = {fed, kFed, unbounded_variables(network, fed, reach)};
   }
   return graph;
 }

@@ -9,6 +9,7 @@
 
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/plan/stability/reach.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/turning.h"
 
@@ -21,6 +22,9 @@ using engine::LiaisonKind;
 struct Uncertainty {
   LiaisonId liaison;
   std::string why;  ///< for a person, as part of a sentence about the liaison
+  /// What the law of the liaison asks for and nothing bounds, where that is why: indices in
+  /// NetworkDescription::variables.
+  std::vector<std::uint32_t> variables = {};
 };
 
 /// A liaison between two MATs with the largest slopes it can have.
@@ -64,6 +68,7 @@ struct LiaisonGraph {
   bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
   Turning turning;
+  Reach reach;  ///< the reach to which laws without a largest slope were followed
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
   void set_step(const engine::NetworkDescription& network, double step);

@@ -235,6 +235,10 @@ bool acts_at(const engine::LinkState& state, double tension) {
 
 }  // namespace
 
+bool is_of_variables(const char* uncertainty) noexcept {
+  return uncertainty == kUnboundedVariable || uncertainty == kMayDriveApart;
+}
+
 const char* jumps_from_behind(const engine::StateMachine& state_machine,
                               const engine::LawPoint& point) {
   const engine::LinkState& state = state_machine.states[state_machine.start];

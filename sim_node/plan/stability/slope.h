@@ -18,6 +18,9 @@ struct Slope {
   const char* uncertainty = nullptr;
 };
 
+/// True if a Slope::uncertainty is due to variables that the law asks for.
+bool is_of_variables(const char* uncertainty) noexcept;
+
 /// Friction gives way across the line of centres, and follows the push along it: the slope in any direction.
 /// The slip is at most `static` times the push, as steep; derived in docs/stability.md. Over all states.
 /// @param slope  of the state machine without friction

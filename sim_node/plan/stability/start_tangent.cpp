@@ -293,6 +293,26 @@ int StartTangent::climb(Columns& x, double step, int max_iterations) const {
   return n;
 }
 
+double StartTangent::diverging_step_of(const Columns& x, double maxwell_step) const {
+  const double stiffness = dot(x, times(x, 1.0, 0.0, maxwell_step));
+  const double viscosity = dot(x, times(x, 0.0, 1.0, maxwell_step));
+  return limit_step(std::max(stiffness, 0.0), viscosity);
+}
+
+int StartTangent::leave_flat_direction(Columns& x, int max_iterations) const {
+  constexpr double kLong = 1e3;    // [s]: beside its square K counts alone
+  constexpr double kShort = 1e-6;  // [s]: and Z alone
+  int iterations = 0;
+  for (const double step : {kLong, kShort}) {
+    Columns other = x;
+    iterations += climb(other, step, max_iterations);
+    if (!std::isfinite(diverging_step_of(other, kNoStep))) continue;
+    x = other;
+    break;
+  }
+  return iterations;
+}
+
 double StartTangent::diverging_step() const {
   Columns x = random_direction(root_of_inverse_mass_, dimension_);
   if (x.norm() == 0.0 || !has_limit_) return std::numeric_limits<double>::infinity();
@@ -305,12 +325,13 @@ double StartTangent::diverging_step() const {
       std::max(kFewestIterations,
                static_cast<int>(kClimbWork / static_cast<double>(parts_.size() + bends_.size() +
                                                                  root_of_inverse_mass_.size())));
+  if (!std::isfinite(diverging_step_of(x, kNoStep)))
+    left -= leave_flat_direction(x, std::min(left, kMaxIterations));
   for (int round = 0; round < kStepRounds; ++round) {
     const double period = std::max(step, kNoStep);  // a Maxwell element is softer at a larger step
     const double stiffness = dot(x, times(x, 1.0, 0.0, period));
-    const double viscosity = dot(x, times(x, 0.0, 1.0, period));
     const double before = step;
-    step = limit_step(std::max(stiffness, 0.0), viscosity);
+    step = diverging_step_of(x, period);
     // Springs that are solved implicitly may hold the direction, at a longer step too.
     is_sure = stiffness * step * step > -kTolerance;
     const bool settled = !std::isfinite(step) || std::abs(step - before) < 0.1 * kTolerance * step;

@@ -68,6 +68,12 @@ class StartTangent {
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,
                 double step) const;
+  /// The step at which one direction diverges [s]; infinite: none. Maxwell elements as at a step.
+  double diverging_step_of(const Columns& x, double maxwell_step) const;
+  /// Goes from a direction that diverges at no step to one that does, if it finds one: towards the largest
+  /// stiffness, and towards the largest viscosity.
+  /// @return the number of iterations it took
+  int leave_flat_direction(Columns& x, int max_iterations) const;
   /// Goes from a direction towards that of the largest eigenvalue at a step.
   /// @return the number of iterations it took
   int climb(Columns& x, double step, int max_iterations) const;

@@ -103,6 +103,11 @@ class ConditionReader {
     assembly_.problems.error(place, message, hint);
   }
 
+  std::string name_of_reference() const {
+    return reference_->owner.empty() ? reference_->word
+                                     : reference_->owner + "." + reference_->word;
+  }
+
   /// The value of a variable; equal ones share a number.
   Instruction value_of(const Variable& variable) {
     std::vector<Variable>& variables = assembly_.scene.network.variables;
@@ -110,6 +115,7 @@ class ConditionReader {
     const auto [known, is_new] = numbers_.emplace(variable, next);
     if (is_new) {
       variables.push_back(variable);
+      assembly_.scene.asked_variables.push_back({name_of_reference(), reference_->place});
       if (variable.quantity == engine::VariableKind::kForce && is_of_one_mat(variable))
         assembly_.scene.network.kept_awake.push_back(variable.index);
     }

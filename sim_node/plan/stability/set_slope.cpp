@@ -1,0 +1,126 @@
+// sim_node/plan/stability/set_slope.cpp
+#include "sim_node/plan/stability/set_slope.h"
+
+#include <algorithm>
+#include <limits>
+#include <variant>
+
+#include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/partner_bound.h"
+#include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/start_point.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::NetworkDescription;
+
+/// The largest distance from a surface at which its normal flips [m]: 0 where edges meet, the middle of
+/// what has none, -infinity for a plane with one side.
+double flips_at(const engine::Surface& surface, int dimension) {
+  const engine::Vec3& half = surface.half_size;
+  switch (surface.kind) {
+    case engine::SurfaceKind::kPlane:
+      return surface.both_sides ? 0.0 : -std::numeric_limits<double>::infinity();
+    case engine::SurfaceKind::kBox: {
+      const auto ends = half.head(dimension).array().isFinite();
+      return ends.count() == 1 ? -half.head(dimension).minCoeff() : 0.0;
+    }
+    case engine::SurfaceKind::kCylinder:
+      return std::isinf(half[1]) ? -half[0] : 0.0;
+    case engine::SurfaceKind::kSegment:
+      return 0.0;
+  }
+  return 0.0;
+}
+
+/// The longest rest length of a pair [m].
+double longest_rest(const NetworkDescription& network, const engine::SetLiaison& set) {
+  if (set.rest_length >= 0.0) return set.rest_length;
+  const auto largest_of = [&](const std::vector<std::uint32_t>& mats) {
+    double largest = 0.0;
+    for (const std::uint32_t mat : mats) largest = std::max(largest, radius_of(network, mat));
+    return largest;
+  };
+  return largest_of(set.set_p) + largest_of(set.set_q.empty() ? set.set_p : set.set_q);
+}
+
+}  // namespace
+
+double smallest_radius(const NetworkDescription& network, const std::vector<std::uint32_t>& mats) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t mat : mats) smallest = std::min(smallest, radius_of(network, mat));
+  return smallest;
+}
+
+double flips_at(const NetworkDescription& network, const engine::SetLiaison& set) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const std::uint32_t mat : set.set_p) {
+    largest = std::max(largest, flips_at(*engine::surface_of(network, mat), network.dimension));
+  }
+  return largest;
+}
+
+double stiffness_across_at(const engine::StateMachine& state_machine, int dimension,
+                           const engine::LawPoint& start) {
+  if (dimension == 1 || state_machine.is_stateless() || start.distance <= 0.0) return 0.0;
+  return tension_at_start(state_machine, start) / start.distance;
+}
+
+SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaison& set,
+                      const Reach& reach) {
+  const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const StartPairs near(network, set);
+  const bool on_surfaces = engine::acts_on_surfaces(network, set);
+  SetStart start{reach_between(reach, network, set.set_p, others)};
+  start.rest_length = set.rest_length >= 0.0
+                          ? set.rest_length
+                          : smallest_radius(network, set.set_p) + smallest_radius(network, others);
+  Reach& here = start.reach;
+  double most = 0.0;  // stored in a pair
+  double nearest = set.range;
+  // Pairs that come into range begin there.
+  const double longest = longest_rest(network, set);
+  here.begins =
+      near.are_kept() ? Interval{set.range - longest, set.range - start.rest_length} : kAnyNumber;
+  here.rests_differ = longest > start.rest_length;
+  for (const StartPair& pair : near.pairs()) {
+    const engine::LawPoint point = start_point(network, set, pair);
+    const double in_pair = stored_in(state_machine, point);
+    most = std::max(most, in_pair);
+    start.stored += in_pair;
+    nearest = std::min(nearest, pair.distance);
+    here.begins.low = std::min(here.begins.low, point.elongation);
+    here.begins.high = std::max(here.begins.high, point.elongation);
+    if (!on_surfaces)
+      start.across =
+          std::max(start.across, stiffness_across_at(state_machine, network.dimension, point));
+  }
+  const auto& law = state_machine.states[state_machine.start].elasticity;
+  const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
+  start.fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);
+  here.energy += most;
+  here.brought += most + (std::isfinite(start.fall) ? start.fall : 0.0);
+  here.range = set.range;
+  start.is_known = near.are_kept();
+  const std::size_t count_p = set.set_p.size();
+  const std::size_t all =
+      set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
+  start.all_begin_within = near.are_kept() && near.pairs().size() == all;
+  return start;
+}
+
+Slope largest_slope_of(const NetworkDescription& network, const engine::SetLiaison& set,
+                       const SetStart& start) {
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  Slope slope =
+      engine::acts_on_surfaces(network, set)
+          ? largest_slope_at_surfaces(state_machine, start.rest_length, flips_at(network, set),
+                                      start.reach)
+          : largest_slope(state_machine, start.rest_length, network.dimension, start.reach);
+  slope.stiffness = std::max(slope.stiffness, start.across);
+  return with_friction(slope, state_machine);
+}
+
+}  // namespace cordis::plan
