@@ -36,6 +36,15 @@ inline Surface cylinder(const Vec3& axis, double radius, double half_length = kN
   return {SurfaceKind::kCylinder, 0, axis, Vec3(radius, half_length, 0.0)};
 }
 
+/// Adds a hollow box or cylinder. @return the numbers of its outside and its inner faces
+inline std::vector<std::uint32_t> add_hollow(NetworkDescription& scene, const Surface& body,
+                                             const Vec3& centre) {
+  std::vector<std::uint32_t> numbers;
+  for (const Surface& surface : engine::hollow_surfaces(body))
+    numbers.push_back(add_surface(scene, surface, centre));
+  return numbers;
+}
+
 inline Surface segment(const Vec3& axis, double half_length) {
   return {SurfaceKind::kSegment, 0, axis, Vec3(half_length, 0.0, 0.0)};
 }

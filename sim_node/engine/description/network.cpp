@@ -158,7 +158,15 @@ void check_surface(const NetworkDescription& description, const Surface& surface
   require(surface_of(description, surface.mat) == &surface, name + ": its MAT",
           "that of one surface alone");
   const Vec3& size = surface.half_size;
-  if (surface.kind == SurfaceKind::kBox) {
+  const bool is_face = surface.kind == SurfaceKind::kBoxFace;
+  if (is_face) {
+    const auto is_across = surface.axis.array().abs() == 1.0;
+    require(is_across.count() == 1 && (surface.axis.array() == 0.0).count() == 2, name + ": normal",
+            "a unit vector along an axis");
+    require(is_across.select(size, 0.0).maxCoeff() < kNoEnd, name + ": half edge along its normal",
+            "finite");
+  }
+  if (is_face || surface.kind == SurfaceKind::kBox) {
     require(size.minCoeff() > 0.0 && size.head(description.dimension).minCoeff() < kNoEnd,
             name + ": half edges", "> 0, and one of them finite");
     for (int axis = description.dimension; axis < 3; ++axis) {
@@ -186,6 +194,8 @@ void check_surface(const NetworkDescription& description, const Surface& surface
   }
   require(size[0] > 0.0 && size[0] < kNoEnd, name + ": radius", "finite and > 0");
   require(size[1] > 0.0, name + ": half length", "> 0");
+  require(surface.kind != SurfaceKind::kCylinderEnd || size[1] < kNoEnd, name + ": half length",
+          "finite");
   const bool is_across = surface.axis == Vec3::UnitZ() && size[1] == kNoEnd;
   require(description.dimension == 3 || (description.dimension == 2 && is_across), name,
           "a cylinder along z without an end in 2 dimensions, and none in 1");

@@ -5,15 +5,22 @@
 #include <cmath>
 #include <limits>
 
+#include "node/assert.h"
 #include "sim_node/engine/description/network.h"
 
 namespace cordis::engine {
 namespace {
 
+/// The distance from what has no inside, at this height over it on the side of `normal`.
+SurfaceDistance without_sign(double height, const Vec3& normal, bool is_beyond) noexcept {
+  if (height > 0.0) return {height, normal, is_beyond};
+  return {-height, height < 0.0 ? Vec3(-normal) : Vec3(Vec3::Zero()), is_beyond};
+}
+
 SurfaceDistance from_plane(const Surface& plane, const Vec3& from_centre) noexcept {
   const double height = dot(plane.axis, from_centre);
-  if (!plane.both_sides || height > 0.0) return {height, plane.axis};
-  return {-height, height < 0.0 ? Vec3(-plane.axis) : Vec3(Vec3::Zero())};
+  if (!plane.both_sides) return {height, plane.axis};
+  return without_sign(height, plane.axis, /*is_beyond=*/false);
 }
 
 SurfaceDistance from_box(const Surface& box, const Vec3& from_centre) noexcept {
@@ -100,6 +107,53 @@ SurfaceDistance from_segment(const Surface& segment, const Vec3& from_centre) no
   return {distance, apart / distance, is_beyond};
 }
 
+/// The outside of a hollow body, from that of a solid one.
+SurfaceDistance outside_of(const Surface& body, const SurfaceDistance& solid) noexcept {
+  if (!body.both_sides) return solid;
+  return without_sign(solid.distance, solid.normal, solid.distance < 0.0);
+}
+
+/// The axis that a face of a box is across.
+int axis_across(const Surface& face) noexcept {
+  for (int k = 0; k < 2; ++k) {
+    if (face.axis[k] != 0.0) return k;
+  }
+  return 2;
+}
+
+SurfaceDistance from_box_face(const Surface& face, const Vec3& from_centre) noexcept {
+  const int k = axis_across(face);
+  const double height = face.axis[k] * from_centre[k] + face.half_size[k];
+  const bool is_beyond = (from_centre.cwiseAbs().array() > face.half_size.array()).any();
+  return without_sign(height, face.axis, is_beyond);
+}
+
+/// Where a place is in a cylinder.
+struct Cylindrical {
+  Cylindrical(const Surface& cylinder, const Vec3& from_centre) noexcept
+      : along(dot(cylinder.axis, from_centre)),
+        radial(from_centre - along * cylinder.axis),
+        radius(std::sqrt(dot(radial, radial))),
+        is_outside(radius > cylinder.half_size[0] || std::abs(along) > cylinder.half_size[1]) {}
+
+  double along;
+  Vec3 radial;
+  double radius;
+  bool is_outside;
+};
+
+SurfaceDistance from_cylinder_wall(const Surface& wall, const Vec3& from_centre) noexcept {
+  const Cylindrical place(wall, from_centre);
+  const double height = wall.half_size[0] - place.radius;
+  if (!(place.radius > 0.0)) return {height, Vec3::Zero(), place.is_outside};
+  return without_sign(height, Vec3(-place.radial / place.radius), place.is_outside);
+}
+
+SurfaceDistance from_cylinder_end(const Surface& end, const Vec3& from_centre) noexcept {
+  const Cylindrical place(end, from_centre);
+  return without_sign(place.along + end.half_size[1], end.axis, place.is_outside);
+}
+
 }  // namespace
 
 SurfaceDistance distance_from(const Surface& surface, const Vec3& centre,
@@ -109,13 +163,44 @@ SurfaceDistance distance_from(const Surface& surface, const Vec3& centre,
     case SurfaceKind::kPlane:
       return from_plane(surface, from_centre);
     case SurfaceKind::kBox:
-      return from_box(surface, from_centre);
+      return outside_of(surface, from_box(surface, from_centre));
     case SurfaceKind::kCylinder:
-      return from_cylinder(surface, from_centre);
+      return outside_of(surface, from_cylinder(surface, from_centre));
     case SurfaceKind::kSegment:
       return from_segment(surface, from_centre);
+    case SurfaceKind::kBoxFace:
+      return from_box_face(surface, from_centre);
+    case SurfaceKind::kCylinderWall:
+      return from_cylinder_wall(surface, from_centre);
+    case SurfaceKind::kCylinderEnd:
+      return from_cylinder_end(surface, from_centre);
   }
   return {};
+}
+
+std::vector<Surface> hollow_surfaces(const Surface& body) {
+  CORDIS_ASSERT(body.kind == SurfaceKind::kBox || body.kind == SurfaceKind::kCylinder);
+  std::vector<Surface> surfaces{body};
+  surfaces[0].both_sides = true;
+  const auto add = [&](SurfaceKind kind, const Vec3& axis) {
+    surfaces.push_back(body);
+    surfaces.back().kind = kind;
+    surfaces.back().axis = axis;
+  };
+  const auto has_ends = [&body](int k) { return std::isfinite(body.half_size[k]); };
+  if (body.kind == SurfaceKind::kCylinder) {
+    add(SurfaceKind::kCylinderWall, body.axis);
+    if (!has_ends(1)) return surfaces;
+    add(SurfaceKind::kCylinderEnd, body.axis);
+    add(SurfaceKind::kCylinderEnd, -body.axis);
+    return surfaces;
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (!has_ends(k)) continue;
+    add(SurfaceKind::kBoxFace, Vec3::Unit(k));
+    add(SurfaceKind::kBoxFace, -Vec3::Unit(k));
+  }
+  return surfaces;
 }
 
 const Surface* surface_of(const NetworkDescription& network, std::uint32_t mat) noexcept {
