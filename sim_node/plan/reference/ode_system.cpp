@@ -124,9 +124,14 @@ void OdeSystem::each_pair(std::uint32_t set, const Values& values, Visit visit) 
   for (const NearPairs::Pair& pair : known.near.near(values.data())) {
     if (!known.bound.empty() && known.bound.contains(pair)) continue;
     const engine::Surface* surface = engine::surface_of(network_, pair.first);
-    const double distance =
-        surface != nullptr ? from_surface(*surface, values.data(), pair.second).distance
-                           : (position(values, pair.second) - position(values, pair.first)).norm();
+    double distance = 0.0;
+    if (surface != nullptr) {
+      const engine::SurfaceDistance from = from_surface(*surface, values.data(), pair.second);
+      if (from.is_beyond) continue;
+      distance = from.distance;
+    } else {
+      distance = (position(values, pair.second) - position(values, pair.first)).norm();
+    }
     if (distance < range && !visit(pair, fresh(set, pair))) return;
   }
   for (const auto& [pair, present] : known.bound) {

@@ -19,9 +19,10 @@ using engine::NetworkDescription;
 /// what has none, -infinity for a plane with one side.
 double flips_at(const engine::Surface& surface, int dimension) {
   const engine::Vec3& half = surface.half_size;
+  if (surface.both_sides) return 0.0;
   switch (surface.kind) {
     case engine::SurfaceKind::kPlane:
-      return surface.both_sides ? 0.0 : -std::numeric_limits<double>::infinity();
+      return -std::numeric_limits<double>::infinity();
     case engine::SurfaceKind::kBox: {
       const auto ends = half.head(dimension).array().isFinite();
       return ends.count() == 1 ? -half.head(dimension).minCoeff() : 0.0;
@@ -29,9 +30,23 @@ double flips_at(const engine::Surface& surface, int dimension) {
     case engine::SurfaceKind::kCylinder:
       return std::isinf(half[1]) ? -half[0] : 0.0;
     case engine::SurfaceKind::kSegment:
+    case engine::SurfaceKind::kBoxFace:
+    case engine::SurfaceKind::kCylinderWall:
+    case engine::SurfaceKind::kCylinderEnd:
       return 0.0;
   }
   return 0.0;
+}
+
+/// The radius of the narrowest hollow cylinder among the surfaces of a set [m]; infinite: there is none.
+double narrowest_hollow(const NetworkDescription& network, const engine::SetLiaison& set) {
+  double narrowest = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t mat : set.set_p) {
+    const engine::Surface& surface = *engine::surface_of(network, mat);
+    if (surface.kind == engine::SurfaceKind::kCylinderWall)
+      narrowest = std::min(narrowest, surface.half_size[0]);
+  }
+  return narrowest;
 }
 
 /// The longest rest length of a pair [m].
@@ -114,11 +129,15 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
 Slope largest_slope_of(const NetworkDescription& network, const engine::SetLiaison& set,
                        const SetStart& start) {
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
-  Slope slope =
-      engine::acts_on_surfaces(network, set)
-          ? largest_slope_at_surfaces(state_machine, start.rest_length, flips_at(network, set),
-                                      start.reach)
-          : largest_slope(state_machine, start.rest_length, network.dimension, start.reach);
+  Slope slope;
+  if (engine::acts_on_surfaces(network, set)) {
+    slope = largest_slope_at_surfaces(state_machine, start.rest_length, flips_at(network, set),
+                                      start.reach);
+    slope = with_hollow(slope, state_machine, narrowest_hollow(network, set),
+                        longest_rest(network, set), start.reach);
+  } else {
+    slope = largest_slope(state_machine, start.rest_length, network.dimension, start.reach);
+  }
   slope.stiffness = std::max(slope.stiffness, start.across);
   return with_friction(slope, state_machine);
 }

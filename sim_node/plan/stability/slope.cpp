@@ -37,6 +37,8 @@ constexpr const char* kPullsWhereNormalFlips =
     "it may pull within the surface, where the normal flips";
 constexpr const char* kJumpsWhereNormalFlips =
     "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
+constexpr const char* kActsOnAxis =
+    "it acts on the axis of a hollow cylinder, where the normal flips";
 constexpr double kNeverPassed = 1e4;  // energies of the fastest ball
 constexpr const char* kConfinesNothing = "its expression grows steeper, and no energy confines it";
 
@@ -337,19 +339,25 @@ struct Flip {
   double barrier = kNoLimit;  // energy that takes a ball there against the push [J]; infinite: none
 };
 
+bool has_force(const engine::LinkState& state) {
+  return state.stiffness > 0.0 || !is_none(state.elasticity);
+}
+
+bool moves_rest(const engine::StateMachine& state_machine) {
+  return std::ranges::any_of(state_machine.exits, [](const engine::Transition& exit) {
+    return exit.rest != engine::RestRule::kKeep;
+  });
+}
+
 Flip flip_of(const engine::LinkState& state, double rest_length, double flips_at, bool moves_rest,
              const Reach& reach) {
   const auto tension = [&](double distance) {
-    const double elongation = distance - rest_length;
-    const Interval law = tension_between(state.elasticity, distance, elongation, reach);
-    return Interval{state.stiffness * elongation + law.low,
-                    state.stiffness * elongation + law.high};
+    return tension_at(state, distance, rest_length, reach);
   };
-  const bool has_force = state.stiffness > 0.0 || !is_none(state.elasticity);
   Flip flip;
   if (moves_rest) {  // to wherever
-    flip.pulls = state.pulls && has_force;
-    if (state.pushes && has_force) flip.barrier = 0.0;
+    flip.pulls = state.pulls && has_force(state);
+    if (state.pushes && has_force(state)) flip.barrier = 0.0;
     return flip;
   }
   constexpr int kSamples = 64;
@@ -377,19 +385,43 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
                                 double flips_at, const Reach& reach) {
   Slope slope = largest_slope(state_machine, rest_length, 1, reach);
   if (std::isinf(flips_at) || slope.uncertainty != nullptr) return slope;
-  const bool moves_rest = std::ranges::any_of(
-      state_machine.exits,
-      [](const engine::Transition& exit) { return exit.rest != engine::RestRule::kKeep; });
+  const bool rest_moves = moves_rest(state_machine);
   const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
   const double pressed = reach.driven * std::max(rest_length - flips_at, 0.0);
   const double energy = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed + pressed;
   for (const engine::LinkState& state : state_machine.states) {
-    const Flip flip = flip_of(state, rest_length, flips_at, moves_rest, reach);
+    const Flip flip = flip_of(state, rest_length, flips_at, rest_moves, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
     if (flip.barrier >= kNeverPassed * energy) continue;
     slope.bounded = false;
     if (flip.barrier <= energy && slope.uncertainty == nullptr)
       slope.uncertainty = kJumpsWhereNormalFlips;
+  }
+  return slope;
+}
+
+/// The force is at most what it is at the end of its range and its largest slope from there on, so that its share
+/// of the radius is largest at the wall, or at that end.
+Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double radius,
+                  double rest_length, const Reach& reach) {
+  if (std::isinf(radius)) return slope;
+  const bool rest_moves = moves_rest(state_machine);
+  const double along = slope.stiffness;
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const engine::LinkState& state = state_machine.states[s];
+    if (!has_force(state)) continue;
+    const bool ends_at_range = s == state_machine.start && reach.range < radius;
+    const double end = ends_at_range ? reach.range : radius;
+    const Interval tension = tension_at(state, end, rest_length, reach);
+    if (!ends_at_range) {
+      const bool acts = rest_moves || tension.low < 0.0 || tension.high > 0.0;
+      if (acts && slope.uncertainty == nullptr) slope.uncertainty = kActsOnAxis;
+      continue;
+    }
+    const double push = -tension.low;
+    if (!(push > 0.0)) continue;
+    slope.stiffness =
+        std::max({slope.stiffness, (push + along * end) / radius, push / (radius - end)});
   }
   return slope;
 }

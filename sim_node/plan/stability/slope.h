@@ -40,6 +40,14 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 
+/// Adds what a push gains across by the round wall of a hollow cylinder: a push P at the distance d from a wall of
+/// the radius R has the stiffness P / (R - d) around its axis. Uncertain where anything acts on the axis.
+/// @param slope        of the liaison at its surfaces, along the normal
+/// @param radius       of the narrowest one [m], infinite without one
+/// @param rest_length  the longest [m]
+Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double radius,
+                  double rest_length, const Reach& reach);
+
 /// True if the force of a pair of a set of 1 dimension jumps where its ends pass each other, for it pulls there.
 /// @param slope  of the liaison
 bool pull_jumps_where_pairs_pass(const engine::StateMachine& state_machine, double rest_length,

@@ -28,6 +28,12 @@ constexpr double kTolerance = 1e-7;
 constexpr double kFlat = 1e-14;
 constexpr double kNoStep = 1e-300;  // [s]
 
+/// True if the normal of a surface turns away beside an edge or around it.
+bool is_convex(engine::SurfaceKind kind) {
+  return kind == engine::SurfaceKind::kBox || kind == engine::SurfaceKind::kCylinder ||
+         kind == engine::SurfaceKind::kSegment;
+}
+
 double dot(const Columns& a, const Columns& b) {
   return a.cwiseProduct(b).sum();
 }
@@ -183,9 +189,11 @@ void StartTangent::add_set(const engine::NetworkDescription& network, const engi
     if (tangent.is_nothing()) continue;
     if (tangent.jumps || drives_beside_dampers(tangent)) hold(a, b);
     if (on_surfaces) {
-      add_at_surface(*engine::surface_of(network, a), b, network,
-                     stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
+      const engine::Surface& surface = *engine::surface_of(network, a);
+      const double tension = stiffness_weight * tangent.tension;
+      add_at_surface(surface, b, network, stiffness_weight * tangent.stiffness, tension,
                      viscosity_weight * tangent.viscosity);
+      if (tangent.acts) add_around_axis(surface, b, network, tension);
       continue;
     }
     add(a, b, network, stiffness_weight * tangent.stiffness, stiffness_weight * tangent.tension,
@@ -211,10 +219,22 @@ void StartTangent::add_at_surface(const engine::Surface& surface, std::uint32_t 
                                   double tension, double viscosity) {
   const engine::SurfaceDistance from = engine::distance_from(
       surface, network.mats[surface.mat].position, network.mats[ball].position);
-  const bool turns = dimension_ > 1 && surface.kind != engine::SurfaceKind::kPlane;
+  const bool turns = dimension_ > 1 && is_convex(surface.kind);
   const double radius = std::abs(from.distance);
   const double across = turns && tension < 0.0 && radius > 0.0 ? tension / radius : 0.0;
   parts_.push_back({surface.mat, ball, from.normal, along, across, viscosity, 0.0});
+}
+
+/// The round wall of a hollow cylinder brings back what it pushes, around its axis.
+void StartTangent::add_around_axis(const engine::Surface& surface, std::uint32_t ball,
+                                   const engine::NetworkDescription& network, double tension) {
+  if (surface.kind != engine::SurfaceKind::kCylinderWall) return;
+  const engine::SurfaceDistance from = engine::distance_from(
+      surface, network.mats[surface.mat].position, network.mats[ball].position);
+  const double to_axis = surface.half_size[0] - from.distance;
+  if (!(to_axis > 0.0) || from.is_beyond) return;
+  const Eigen::Vector3d around = surface.axis.cross(from.normal);
+  parts_.push_back({surface.mat, ball, around, -tension / to_axis, 0.0, 0.0, 0.0});
 }
 
 bool StartTangent::drives_beside_dampers(const Tangent& tangent) const {

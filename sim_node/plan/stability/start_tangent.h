@@ -61,6 +61,8 @@ class StartTangent {
   void add_at_surface(const engine::Surface& surface, std::uint32_t ball,
                       const engine::NetworkDescription& network, double along, double tension,
                       double viscosity);
+  void add_around_axis(const engine::Surface& surface, std::uint32_t ball,
+                       const engine::NetworkDescription& network, double tension);
   /// True for a law that drives the motion beside implicit dampers.
   bool drives_beside_dampers(const Tangent& tangent) const;
   void hold(std::uint32_t a, std::uint32_t b);

@@ -24,6 +24,63 @@ struct Body {
   const Vec3& centre;
 };
 
+bool is_box(const Surface& surface) noexcept {
+  return surface.kind == SurfaceKind::kBox;
+}
+bool is_plane(const Surface& surface) noexcept {
+  return surface.kind == SurfaceKind::kPlane;
+}
+
+/// Where a surface is nearer than the reach: what is within a margin of a convex core. An inner face has the
+/// layer of its body along it, without a margin.
+struct Zone {
+  Zone(const Surface& of, const Vec3& place, double reach)
+      : surface(of), core(of), centre(place), margin(reach) {
+    switch (surface.kind) {
+      case SurfaceKind::kBoxFace:
+        core.kind = SurfaceKind::kBox;
+        for (int axis = 0; axis < 3; ++axis) {
+          if (surface.axis[axis] != 0.0) keep_layer(axis, reach);
+        }
+        break;
+      case SurfaceKind::kCylinderEnd:
+        core.kind = SurfaceKind::kCylinder;
+        keep_layer(1, reach);
+        break;
+      case SurfaceKind::kCylinderWall:
+        core.kind = SurfaceKind::kCylinder;
+        margin = 0.0;
+        hole = surface.half_size[0] - reach;
+        break;
+      default:
+        break;
+    }
+  }
+
+  Body body() const { return {core, centre}; }
+  bool is_outside() const {
+    return surface.both_sides &&
+           (surface.kind == SurfaceKind::kBox || surface.kind == SurfaceKind::kCylinder);
+  }
+
+  const Surface& surface;
+  Surface core;
+  Vec3 centre;
+  double margin = 0.0;
+  double hole =
+      -kNoEnd;  ///< nearer to the axis of a cylinder than this, its round wall is out of reach [m]
+
+ private:
+  /// Leaves of the core what is nearer than the reach to the face at its lower end, seen along its normal.
+  void keep_layer(int size_index, double reach) {
+    double& half = core.half_size[size_index];
+    const double layer = std::min(0.5 * reach, half);
+    centre -= (half - layer) * surface.axis;
+    half = layer;
+    margin = 0.0;
+  }
+};
+
 /// Directions along which a distance does not count: beyond the dimension, and without an end.
 class CountedDirections {
  public:
@@ -38,7 +95,7 @@ class CountedDirections {
   }
   void take_out_endless(const Surface& surface) {
     if (surface.kind == SurfaceKind::kSegment) return;
-    if (surface.kind == SurfaceKind::kCylinder) {
+    if (!is_box(surface)) {
       if (surface.half_size[1] == kNoEnd) take_out(surface.axis);
       return;
     }
@@ -132,21 +189,91 @@ bool planes_meet(const Body& a, const Body& b, double reach) {
   return std::max(of_a.lowest, of_b.lowest) < std::min(of_a.highest, of_b.highest);
 }
 
-/// True if a place may be nearer to both than the reach.
-bool share_a_place(const Body& a, const Body& b, double reach, int dimension) {
-  const bool a_is_plane = a.surface.kind == SurfaceKind::kPlane;
-  const bool b_is_plane = b.surface.kind == SurfaceKind::kPlane;
-  if (a_is_plane && b_is_plane) return planes_meet(a, b, reach);
-  if (!a_is_plane && !b_is_plane) {
-    if (a.surface.kind != SurfaceKind::kBox || b.surface.kind != SurfaceKind::kBox)
-      return may_be_nearer(a, b, 2.0 * reach, dimension);
-    const Vec3 gap = (b.centre - a.centre).cwiseAbs() - a.surface.half_size - b.surface.half_size;
-    return gap.cwiseMax(0.0).norm() < 2.0 * reach;
+/// The farthest that a point of a body may be from the axis of a cylinder, exact for what is along it [m].
+double farthest_from_axis(const Body& cylinder, const Body& body) {
+  const Vec3& axis = cylinder.surface.axis;
+  const Vec3& size = body.surface.half_size;
+  const auto across = [&axis](const Vec3& vector) {
+    return Vec3(vector - axis.dot(vector) * axis);
+  };
+  const Vec3 middle = across(body.centre - cylinder.centre);
+  if (is_plane(body.surface)) return kNoEnd;
+  double farthest = 0.0;
+  if (!is_box(body.surface)) {
+    const bool is_round = body.surface.kind != SurfaceKind::kSegment;
+    const double half = is_round ? size[1] : size[0];
+    const Vec3 along = across(body.surface.axis);
+    const bool is_parallel = along.norm() < kSameDirection;
+    if (!is_parallel && half == kNoEnd) return kNoEnd;
+    for (const double end : {-1.0, 1.0}) {
+      const Vec3 place = is_parallel ? middle : Vec3(middle + end * half * along);
+      farthest = std::max(farthest, place.norm());
+    }
+    return farthest + (is_round ? size[0] : 0.0);
   }
-  const Body& plane = a_is_plane ? a : b;
-  const Heights heights = heights_over(plane, a_is_plane ? b : a);
-  return heights.lowest < 2.0 * reach &&
-         (!plane.surface.both_sides || heights.highest > -2.0 * reach);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 place = middle;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 edge = across(Vec3::Unit(k));
+      if (edge.norm() < kSameDirection) continue;
+      if (size[k] == kNoEnd) return kNoEnd;
+      place += (corner >> k & 1) != 0 ? Vec3(size[k] * edge) : Vec3(-size[k] * edge);
+    }
+    farthest = std::max(farthest, place.norm());
+  }
+  return farthest;
+}
+
+/// True if all of a zone is inside of a body, where its outside does not act.
+bool is_within(const Zone& zone, const Zone& body) {
+  constexpr double kRounding = 1e-12;
+  if (is_plane(zone.surface)) return false;
+  const auto fits = [&](double extent, double half) {
+    return extent + zone.margin <= half * (1.0 + kRounding);
+  };
+  const auto fits_along = [&](const Vec3& axis, double half) {
+    Surface across;
+    across.axis = axis;
+    if (half == kNoEnd) return true;
+    const Heights heights = heights_over({across, body.centre}, zone.body());
+    return fits(std::max(heights.highest, -heights.lowest), half);
+  };
+  const Vec3& size = body.core.half_size;
+  if (is_box(body.core)) {
+    return fits_along(Vec3::UnitX(), size[0]) && fits_along(Vec3::UnitY(), size[1]) &&
+           fits_along(Vec3::UnitZ(), size[2]);
+  }
+  return fits_along(body.core.axis, size[1]) &&
+         fits(farthest_from_axis(body.body(), zone.body()), size[0]);
+}
+
+/// True if the cores and the margins of two zones may have a place in common.
+bool may_overlap(const Zone& a, const Zone& b, int dimension) {
+  constexpr double kOverlap = 1e-12;  // of the sizes: of two layers without margins
+  const double margin = a.margin + b.margin;
+  if (!is_plane(a.surface) && !is_plane(b.surface)) {
+    const bool are_boxes = is_box(a.core) && is_box(b.core);
+    const Vec3 gap = (b.centre - a.centre).cwiseAbs() - a.core.half_size - b.core.half_size;
+    if (are_boxes) return margin > 0.0 ? gap.cwiseMax(0.0).norm() < margin : gap.maxCoeff() < 0.0;
+    const double least = kOverlap * (a.core.half_size[0] + b.core.half_size[0]);
+    return may_be_nearer(a.body(), b.body(), std::max(margin, least), dimension);
+  }
+  const Zone& plane = is_plane(a.surface) ? a : b;
+  const Heights heights = heights_over(plane.body(), (is_plane(a.surface) ? b : a).body());
+  return heights.lowest < margin && (!plane.surface.both_sides || heights.highest > -margin);
+}
+
+/// True if a place may be nearer to both than the reach.
+bool share_a_place(const Body& of_a, const Body& of_b, double reach, int dimension) {
+  if (is_plane(of_a.surface) && is_plane(of_b.surface)) return planes_meet(of_a, of_b, reach);
+  const Zone a(of_a.surface, of_a.centre, reach);
+  const Zone b(of_b.surface, of_b.centre, reach);
+  if ((a.is_outside() && is_within(b, a)) || (b.is_outside() && is_within(a, b))) return false;
+  const auto is_in_hole = [](const Zone& wall, const Zone& other) {
+    return wall.hole > 0.0 &&
+           farthest_from_axis(wall.body(), other.body()) + other.margin <= wall.hole;
+  };
+  return !is_in_hole(a, b) && !is_in_hole(b, a) && may_overlap(a, b, dimension);
 }
 
 /// The largest group of a graph whose members are all joined to each other.

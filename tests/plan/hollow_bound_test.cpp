@@ -1,0 +1,255 @@
+// tests/plan/hollow_bound_test.cpp -- the certificate of hollow bodies, and their reference motion.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/reference/reference_integrator.h"
+#include "sim_node/plan/stability/liaison_graph.h"
+#include "sim_node/plan/stability/start_tangent.h"
+#include "sim_node/plan/stability/step_bound.h"
+#include "sim_node/plan/stability/surface_bound.h"
+#include "tests/engine/programs.h"
+#include "tests/engine/surfaces.h"
+#include "tests/plan/networks.h"
+
+namespace cordis::test {
+namespace {
+
+constexpr double kLayer = 0.05;  // reach of the force [m]
+
+/// Some bodies and how many of their surfaces a place may have in reach.
+struct Bodies {
+  std::vector<Surface> surfaces;
+  std::vector<Vec3> centres;
+
+  Bodies& add(const Surface& surface, const Vec3& centre = Vec3::Zero()) {
+    surfaces.push_back(surface);
+    centres.push_back(centre);
+    return *this;
+  }
+  Bodies& add_hollow(const Surface& body, const Vec3& centre = Vec3::Zero()) {
+    for (const Surface& surface : engine::hollow_surfaces(body)) add(surface, centre);
+    return *this;
+  }
+  double most(int dimension = 3, double reach = kLayer) const {
+    return plan::max_surfaces_in_reach(surfaces, centres, reach, dimension);
+  }
+};
+
+const Surface kRoom = box(Vec3(0.3, 0.4, kNoEnd));
+const Surface kTube = cylinder(Vec3::UnitZ(), 0.3);
+
+TEST(HollowBound, CountsTheFacesOfOneCorner) {
+  EXPECT_EQ(Bodies().add_hollow(box(Vec3::Constant(0.3))).most(), 3.0);
+  EXPECT_EQ(Bodies().add_hollow(kRoom).most(2), 2.0);
+  EXPECT_EQ(Bodies().add_hollow(kRoom).most(3), 2.0);
+  EXPECT_EQ(Bodies().add_hollow(box(Vec3(0.3, kNoEnd, kNoEnd))).most(1), 1.0);
+  EXPECT_EQ(Bodies().add_hollow(kTube).most(2), 1.0);
+  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.5)).most(), 2.0);
+}
+
+TEST(HollowBound, CountsOppositeFacesThatABallTouchesAtOnce) {
+  EXPECT_EQ(Bodies().add_hollow(box(Vec3(1.001 * kLayer, 0.4, kNoEnd))).most(2), 2.0);
+  EXPECT_EQ(Bodies().add_hollow(box(Vec3(0.999 * kLayer, 0.4, kNoEnd))).most(2), 3.0);
+  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 1.001 * kLayer)).most(), 2.0);
+  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.999 * kLayer)).most(), 3.0);
+}
+
+TEST(HollowBound, CountsWhatIsInsideByItsGapFromEachFace) {
+  const auto with_post = [](const Surface& body, const Vec3& place) {
+    return Bodies().add_hollow(body).add(cylinder(Vec3::UnitZ(), 0.1), place).most(2);
+  };
+  EXPECT_EQ(with_post(kRoom, Vec3::Zero()), 2.0) << "the faces of a corner";
+  EXPECT_EQ(with_post(kTube, Vec3(0.2 - 2.01 * kLayer, 0.0, 0.0)), 1.0);
+  EXPECT_EQ(with_post(kTube, Vec3(0.2 - 1.99 * kLayer, 0.0, 0.0)), 2.0);
+  // and in a corner of the room with both faces
+  const auto in_corner = [&](double gap) {
+    return Bodies()
+        .add_hollow(kRoom)
+        .add(box(Vec3(0.1, 0.1, kNoEnd)), Vec3(0.2 - gap, 0.3 - gap, 0.0))
+        .most(2);
+  };
+  EXPECT_EQ(in_corner(1.99 * kLayer), 3.0);
+  EXPECT_EQ(in_corner(2.01 * kLayer), 2.0);
+}
+
+TEST(HollowBound, CountsTheOutsideOnlyWithWhatIsOutside) {
+  const Surface wide = box(Vec3(kNoEnd, 0.4, kNoEnd));
+  const auto with_floor = [&](double gap) {
+    return Bodies().add_hollow(wide).add(plane(Vec3::UnitY()), Vec3(0.0, -0.4 - gap, 0.0)).most(2);
+  };
+  EXPECT_EQ(with_floor(1.99 * kLayer), 2.0) << "the floor and the outside, above it";
+  // Matter belongs above the floor, and is pushed out of what lies below: outside of the body that is so too.
+  const auto with_wall = [&](double gap) {
+    return Bodies()
+        .add_hollow(wide)
+        .add(plane(Vec3::UnitY(), true), Vec3(0.0, -0.4 - gap, 0.0))
+        .most(2);
+  };
+  EXPECT_EQ(with_wall(1.99 * kLayer), 2.0);
+  EXPECT_EQ(with_wall(2.01 * kLayer), 1.0);
+  // One in the other: between them are the outside of one and the inside of the other.
+  const auto nested = [&](double gap) {
+    return Bodies().add_hollow(kTube).add_hollow(cylinder(Vec3::UnitZ(), 0.3 - gap)).most(2);
+  };
+  EXPECT_EQ(nested(1.99 * kLayer), 2.0);
+  EXPECT_EQ(nested(2.01 * kLayer), 1.0);
+}
+
+TEST(HollowBound, IsNeverBelowTheTrueNumberAtAnyPlace) {
+  double counted = 0.0;
+  double bounded = 0.0;
+  for (unsigned seed = 1; seed <= 90; ++seed) {
+    Chance chance(seed);
+    const int dimension = 2 + static_cast<int>(seed % 2);
+    Bodies bodies;
+    for (int s = 0; s < 5; ++s) {
+      Surface body = chance.shape(dimension);
+      const bool is_body = body.kind == SurfaceKind::kBox || body.kind == SurfaceKind::kCylinder;
+      if (body.kind == SurfaceKind::kPlane) body.both_sides = true;
+      if (body.kind == SurfaceKind::kBox && chance.random() % 3 == 0) body.half_size.x() = kNoEnd;
+      const Vec3 centre = chance.place(0.5, dimension);
+      if (is_body && chance.random() % 4 != 0) {
+        bodies.add_hollow(body, centre);
+      } else {
+        bodies.add(body, centre);
+      }
+    }
+    const double reach = chance(0.03, 0.2);
+    const double bound = bodies.most(dimension, reach);
+    double most = 0.0;
+    for (int n = 0; n < 4000; ++n) {
+      const Vec3 here = chance.place(0.9, dimension);
+      double count = 0.0;
+      for (std::size_t s = 0; s < bodies.surfaces.size(); ++s) {
+        const auto from = engine::distance_from(bodies.surfaces[s], bodies.centres[s], here);
+        if (from.distance < reach && !from.is_beyond) count += 1.0;
+      }
+      most = std::max(most, count);
+    }
+    EXPECT_LE(most, bound) << seed;
+    counted += most;
+    bounded += bound;
+  }
+  EXPECT_LT(bounded, 1.5 * counted) << "it is near";
+}
+
+/// A ball of 0.2 kg and 0.05 m at the bottom of a hollow cylinder of 0.4 m, which begins at rest.
+NetworkDescription ball_at_bottom(double stiffness, double range, double rest, double start,
+                                  double step) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = step;
+  scene.mats = {mass(0.2, Vec3(1e-6, start - 0.4, 0.0))};
+  scene.radius = {0.05};
+  scene.gravity = Vec3(0.0, -stiffness * (rest - start) / 0.2, 0.0);
+  const auto surfaces = add_hollow(scene, cylinder(Vec3::UnitZ(), 0.4), Vec3::Zero());
+  touch(scene, 1, contact(stiffness), range, rest, surfaces);
+  return scene;
+}
+
+TEST(HollowBound, OfAPlainContactIsThatOfAFloor) {
+  const NetworkDescription scene = ball_at_bottom(2000.0, 0.05, 0.05, 0.049, 1e-4);
+  const double limit = 2.0 * std::sqrt(0.2 / 2000.0);
+  EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step, limit, 1e-12);
+  EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), limit, 1e-6 * limit);
+  EXPECT_FALSE(plan::plan_of(scene, 0.1).stability.uncertainty.has_value());
+}
+
+/// Across, 18 N at 0.2 m from the axis are 90 N/m, nine times what the spring is along the normal.
+TEST(HollowBound, CountsWhatAConcaveWallAddsAcross) {
+  constexpr double kSpring = 10.0;
+  const NetworkDescription scene = ball_at_bottom(kSpring, 0.25, 2.0, 0.2, 1e-3);
+  const double across_at_start = kSpring * 1.8 / 0.2;
+  const double limit = 2.0 * std::sqrt(0.2 / across_at_start);
+  EXPECT_NEAR(plan::StartTangent(scene).diverging_step(), limit, 1e-6 * limit);
+  const double across_at_range = kSpring * 1.75 / 0.15;
+  EXPECT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step,
+              2.0 * std::sqrt(0.2 / across_at_range), 1e-9);
+  const auto farthest_after = [](double step) {
+    World world = make_world(ball_at_bottom(kSpring, 0.25, 2.0, 0.2, step));
+    double farthest = 0.0;
+    for (int n = 0; n < 300; ++n) {
+      world.step();
+      farthest = std::max(farthest, std::abs(world.position(0).x()));
+    }
+    return farthest;
+  };
+  EXPECT_LT(farthest_after(0.99 * limit), 1e-4);
+  EXPECT_GT(farthest_after(1.02 * limit), 0.01);
+}
+
+TEST(HollowBound, IsNotCertainWhereABallIsWiderThanItsCylinder) {
+  const auto why = [](double rest) {
+    NetworkDescription scene = ball_at_bottom(2000.0, 0.5, rest, rest - 0.001, 1e-4);
+    const plan::Plan plan = plan::plan_of(scene, 0.1);
+    return plan.stability.uncertainty ? std::string(plan.stability.uncertainty->why) : "";
+  };
+  EXPECT_EQ(why(0.39), "");
+  EXPECT_NE(why(0.41).find("acts on the axis of a hollow cylinder"), std::string::npos)
+      << why(0.41);
+}
+
+TEST(HollowBound, TellsOfABallThatComesThroughTheWallAsOfAPlane) {
+  const auto is_uncertain = [](const Surface& body, double speed) {
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = 1e-4;
+    scene.mats = {mass(0.01, Vec3::Zero(), Vec3(0.0, -speed, 0.0))};
+    scene.radius = {0.01};
+    touch(scene, 1, contact(400.0), 0.01, -1.0, add_hollow(scene, body, Vec3::Zero()));
+    return plan::plan_of(scene, 10.0).stability.uncertainty.has_value();
+  };
+  // K r^2 / 2 is 20 mJ, and the ball has 5 at 1 m/s.
+  for (const Surface& body : {kRoom, kTube}) {
+    EXPECT_FALSE(is_uncertain(body, 1.0));
+    EXPECT_TRUE(is_uncertain(body, 2.1));
+  }
+}
+
+/// @return how far the world is from the reference after this time [m]
+double away_from_reference(const NetworkDescription& scene, int steps) {
+  World world = make_world(scene);
+  run(world, steps);
+  plan::ReferenceIntegrator reference(scene, 1e-9);
+  reference.advance_to(steps * scene.step);
+  return (reference.position(0) - world.position(0)).norm();
+}
+
+NetworkDescription thrown_ball(const Vec3& place, const Vec3& velocity) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-5;
+  scene.gravity = Vec3(0.0, -9.81, 0.0);
+  scene.mats = {mass(0.2, place, velocity)};
+  scene.radius = {0.05};
+  return scene;
+}
+
+TEST(HollowBound, LetsTheReferenceIntegratorFollowABallInsideAndOutside) {
+  for (const Surface& body : {kRoom, kTube}) {
+    for (const bool is_inside : {true, false}) {
+      NetworkDescription scene = is_inside ? thrown_ball(Vec3(0.1, 0.0, 0.0), Vec3(0.4, 0.2, 0.0))
+                                           : thrown_ball(Vec3(0.1, 0.5, 0.0), Vec3(0.3, 0.0, 0.0));
+      const auto surfaces = add_hollow(scene, body, Vec3::Zero());
+      touch(scene, 1, contact(20'000.0), 0.05, -1.0, surfaces);
+      EXPECT_LT(away_from_reference(scene, 60'000), 1e-3) << is_inside;
+    }
+  }
+}
+
+/// It rolls over a corner, where one line pushes.
+TEST(HollowBound, LetsTheReferenceIntegratorFollowABallOverAPolyline) {
+  NetworkDescription scene = thrown_ball(Vec3(-0.3, 0.06, 0.0), Vec3(0.8, 0.0, 0.0));
+  const auto lines = add_polyline(scene, {Vec3(-1, 0, 0), Vec3(0, 0, 0), Vec3(1, -0.4, 0)});
+  touch(scene, 1, contact(1000.0), 0.05, -1.0, lines);
+  EXPECT_LT(away_from_reference(scene, 60'000), 1e-3);
+}
+
+}  // namespace
+}  // namespace cordis::test
