@@ -152,6 +152,33 @@ links:
   EXPECT_NO_THROW(engine::Network{scene.network});
 }
 
+TEST(SurfaceMatter, OfBothSidesIsItsOutsideAndItsInnerFaces) {
+  const Scene scene = sound_scene(3, std::string(R"(parts:
+  case:
+    matter:
+      can: {kind: box, center_m: [0, 0, 0], size_m: [0.2, 0.4, 0], sides: both}
+matter:
+  balls: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [[0, 1, 0], [1, 1, 0]]}
+  floor: {kind: cylinder, center_m: [0, 3, 0], axis: x, radius_m: 0.2, length_m: 3, sides: both}
+  post: {kind: cylinder, center_m: [0, 4, 0], axis: x, radius_m: 0.2, sides: one}
+  mine: {part: case, rotate: {axis: z, deg: 90}, translate_m: [7, 0, 0]}
+)") + kTouch);
+  const auto& surfaces = scene.network.surfaces;
+  ASSERT_EQ(surfaces.size(), 4u + 1u + 5u);
+  EXPECT_EQ(scene.network.sets[0].set_p, (std::vector<std::uint32_t>{2, 3, 4, 5}));
+  for (std::size_t s = 0; s < surfaces.size(); ++s) EXPECT_EQ(surfaces[s].mat, 2 + s);
+  EXPECT_TRUE(surfaces[0].both_sides);
+  EXPECT_EQ(surfaces[1].kind, SurfaceKind::kCylinderWall);
+  EXPECT_EQ(surfaces[3].axis, Vec3(-1.0, 0.0, 0.0));
+  EXPECT_FALSE(surfaces[4].both_sides);
+  EXPECT_EQ(surfaces[5].kind, SurfaceKind::kBox);
+  EXPECT_EQ(surfaces[5].half_size, Vec3(0.2, 0.1, kNoEnd)) << "it is turned";
+  EXPECT_EQ(surfaces[6].axis, Vec3(0.0, 1.0, 0.0));
+  EXPECT_EQ(surfaces[6].half_size, surfaces[5].half_size);
+  EXPECT_EQ(scene.network.mats[surfaces[6].mat].position, Vec3(7.0, 0.0, 0.0));
+  EXPECT_NO_THROW(engine::Network{scene.network});
+}
+
 class BadSurface : public BadScenes {};
 
 TEST_P(BadSurface, HasOneProblemAtItsPlace) {
@@ -198,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead2,
                  "matter:\n  a: {kind: cylinder, center_m: [0, 0], radius_m: 1, ^axis: x}\n",
                  "unknown key 'axis' in matter 'a'",
-                 "known keys: kind, driven, center_m, radius_m, color"},
+                 "known keys: kind, driven, center_m, radius_m, sides, color"},
         BadScene{kHead1, "matter:\n  a: {kind: ^cylinder, center_m: 0, radius_m: 1}\n",
                  "a cylinder needs a scene of space 2 or 3, this one has 1", ""},
         BadScene{

@@ -151,9 +151,9 @@ matter:
   house: {kind: skin, corners_m: [[14, 0], [15, 0], [14, 1]], spacing_m: 0.1, mass_kg: 0.01, stiffness_n_per_m: 100}
   bar: {kind: beam, displacement_m: [0, 0], cells: 2, from_m: [16, 0], to_m: [16.2, 0], height_m: 0.1, mass_kg: 0.01, stiffness_n_per_m: 100, ends: first_fixed}
   floor: {kind: plane, at_m: [0, -1], normal: y, sides: both}
-  chest: {kind: box, center_m: [0, -5], size_m: [0.1, 0.1]}
+  chest: {kind: box, center_m: [0, -5], size_m: [0.1, 0.1], sides: both}
   crate: {kind: box, from_m: [1, -5], to_m: [2, -6]}
-  pole: {kind: cylinder, center_m: [3, -5], radius_m: 0.1}
+  pole: {kind: cylinder, center_m: [3, -5], radius_m: 0.1, sides: one}
   hills: {kind: polyline, corners_m: [[0, -7], [1, -6.5], [2, -7]], closed: true}
   row: {part: wheel, translate_m: [20, 0], rotate_deg: 10, color: teal, repeat: {count: 2, translate_m: [1, 0], rotate_deg: 5}}
 liaisons:

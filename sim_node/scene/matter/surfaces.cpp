@@ -15,13 +15,26 @@ namespace {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
-GeneratedMatter matter_of(Source& source, const Surface& surface, const Vec3& place) {
+GeneratedMatter matter_of(Source& source, const std::vector<Surface>& surfaces, const Vec3& place) {
   GeneratedMatter matter;
-  matter.mats.push_back({engine::MatKind::kFixed, 0.0, place, Vec3::Zero()});
-  matter.radius_m.push_back(0.0);
-  matter.layout = row_layout(source, 1);
-  matter.surfaces.push_back(surface);
+  for (const Surface& surface : surfaces) {
+    matter.surfaces.push_back(surface);
+    matter.surfaces.back().mat = static_cast<std::uint32_t>(matter.mats.size());
+    matter.mats.push_back({engine::MatKind::kFixed, 0.0, place, Vec3::Zero()});
+    matter.radius_m.push_back(0.0);
+  }
+  matter.layout = row_layout(source, matter.mats.size());
   return matter;
+}
+
+bool has_both_sides(Source& source) {
+  return source.reader.optional_choice("sides", "one", {"one", "both"}) == "both";
+}
+
+/// A body that is solid, or hollow: of both sides.
+GeneratedMatter body_of(Source& source, const Surface& body, const Vec3& place) {
+  if (!has_both_sides(source) || !source.reader.ok()) return matter_of(source, {body}, place);
+  return matter_of(source, engine::hollow_surfaces(body), place);
 }
 
 /// One direction; the first axis after a problem.
@@ -78,8 +91,8 @@ GeneratedMatter read_plane_surface(Source& source) {
   plane.kind = SurfaceKind::kPlane;
   const Vec3 place = required_point(source.reader, "at_m", source.space);
   plane.axis = required_direction(source, "normal");
-  plane.both_sides = source.reader.optional_choice("sides", "one", {"one", "both"}) == "both";
-  return matter_of(source, plane, place);
+  plane.both_sides = has_both_sides(source);
+  return matter_of(source, {plane}, place);
 }
 
 GeneratedMatter read_box(Source& source) {
@@ -93,7 +106,7 @@ GeneratedMatter read_box(Source& source) {
   } else {
     take_size(source, box, centre);
   }
-  return matter_of(source, box, centre);
+  return body_of(source, box, centre);
 }
 
 GeneratedMatter read_cylinder(Source& source) {
@@ -110,7 +123,7 @@ GeneratedMatter read_cylinder(Source& source) {
           0.5 * source.reader.required_number("length_m", {0.0, kFarthest, true});
     }
   }
-  return matter_of(source, cylinder, centre);
+  return body_of(source, cylinder, centre);
 }
 
 GeneratedMatter read_polyline(Source& source) {
@@ -155,22 +168,27 @@ GeneratedMatter read_polyline(Source& source) {
 }
 
 bool turn_surface(const Placement& placement, int space, Surface& surface) {
-  if (surface.kind != SurfaceKind::kBox) {
-    const bool is_across = space == 2 && surface.kind == SurfaceKind::kCylinder;
-    if (is_across) return true;
+  if (surface.kind != SurfaceKind::kBox && surface.kind != SurfaceKind::kBoxFace) {
+    const bool is_round =
+        surface.kind == SurfaceKind::kCylinder || surface.kind == SurfaceKind::kCylinderWall;
+    if (is_round && space == 2) return true;
     for (Vec3* axis : {&surface.axis, &surface.comes_from, &surface.leads_to})
       *axis = (placement.turn * *axis).normalized();
     return true;
   }
   Vec3 turned = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     for (int from = 0; from < 3; ++from) {
       const double share = std::abs(placement.turn(axis, from));
-      if (share == 1.0) turned[axis] = surface.half_size[from];
+      if (share != 1.0) continue;
+      turned[axis] = surface.half_size[from];
+      normal[axis] = placement.turn(axis, from) * surface.axis[from];
     }
     if (turned[axis] == 0.0) return false;
   }
   surface.half_size = turned;
+  if (surface.kind == SurfaceKind::kBoxFace) surface.axis = normal;
   return true;
 }
 

@@ -6,7 +6,8 @@
 
 namespace cordis::scene {
 
-/// Each is one fixed MAT with a shape, a polyline one for each of its segments. Whatever is wrong is a problem; then the result is not to be used.
+/// Each is one fixed MAT with a shape, a polyline one for each of its segments, a hollow box or cylinder one for its
+/// outside and one for each inner face. Whatever is wrong is a problem; then the result is not to be used.
 GeneratedMatter read_plane_surface(Source& source);
 GeneratedMatter read_box(Source& source);
 GeneratedMatter read_cylinder(Source& source);
