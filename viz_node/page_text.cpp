@@ -104,6 +104,12 @@ const char* word_of(msg::SurfaceKind kind) {
       return "cylinder";
     case msg::SURFACE_SEGMENT:
       return "segment";
+    case msg::SURFACE_HOLLOW_BOX:
+      return "hollow_box";
+    case msg::SURFACE_HOLLOW_CYLINDER:
+      return "hollow_cylinder";
+    case msg::SURFACE_INNER_FACE:
+      return "inner_face";
     case msg::SURFACE_PLANE:
       break;
   }

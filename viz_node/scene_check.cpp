@@ -41,13 +41,17 @@ bool has_shape(const msg::SurfaceDescription& surface) {
     case msg::SURFACE_PLANE:
       return is_unit_vector(surface.axis());
     case msg::SURFACE_BOX:
+    case msg::SURFACE_HOLLOW_BOX:
       return are_sizes(surface.size_m(), 3);
     case msg::SURFACE_CYLINDER:
+    case msg::SURFACE_HOLLOW_CYLINDER:
       return is_unit_vector(surface.axis()) && are_sizes(surface.size_m(), 2) &&
              surface.size_m()[0] > 0.0;
     case msg::SURFACE_SEGMENT:
       return is_unit_vector(surface.axis()) && are_sizes(surface.size_m(), 1) &&
              surface.size_m()[0] > 0.0;
+    case msg::SURFACE_INNER_FACE:
+      return true;
   }
   return false;
 }

@@ -21,10 +21,6 @@ static_assert(static_cast<int>(engine::MatKind::kFixed) == msg::MAT_FIXED);
 static_assert(static_cast<int>(engine::MatKind::kPort) == msg::MAT_PORT);
 static_assert(static_cast<int>(scene::SignalRate::kGesture) == msg::RATE_GESTURE);
 static_assert(static_cast<int>(scene::SignalRate::kStep) == msg::RATE_STEP);
-static_assert(static_cast<int>(engine::SurfaceKind::kPlane) == msg::SURFACE_PLANE);
-static_assert(static_cast<int>(engine::SurfaceKind::kBox) == msg::SURFACE_BOX);
-static_assert(static_cast<int>(engine::SurfaceKind::kCylinder) == msg::SURFACE_CYLINDER);
-static_assert(static_cast<int>(engine::SurfaceKind::kSegment) == msg::SURFACE_SEGMENT);
 static_assert(config::kMaxAxes == msg::MAX_AXES);
 static_assert(msg::MAT_PORT <= std::numeric_limits<std::uint8_t>::max());
 
@@ -94,6 +90,24 @@ std::string name_of(const scene::Scene& scene, std::uint32_t mat) {
   return nearest == nullptr ? "" : nearest->name;
 }
 
+msg::SurfaceKind kind_of(const engine::Surface& surface) {
+  switch (surface.kind) {
+    case engine::SurfaceKind::kPlane:
+      return msg::SURFACE_PLANE;
+    case engine::SurfaceKind::kBox:
+      return surface.both_sides ? msg::SURFACE_HOLLOW_BOX : msg::SURFACE_BOX;
+    case engine::SurfaceKind::kCylinder:
+      return surface.both_sides ? msg::SURFACE_HOLLOW_CYLINDER : msg::SURFACE_CYLINDER;
+    case engine::SurfaceKind::kSegment:
+      return msg::SURFACE_SEGMENT;
+    case engine::SurfaceKind::kBoxFace:
+    case engine::SurfaceKind::kCylinderWall:
+    case engine::SurfaceKind::kCylinderEnd:
+      break;
+  }
+  return msg::SURFACE_INNER_FACE;
+}
+
 /// In the coordinates of a frame.
 msg::SurfaceDescription surface_of(const scene::Scene& scene, const engine::Surface& surface,
                                    const FrameLayout& layout) {
@@ -104,8 +118,9 @@ msg::SurfaceDescription surface_of(const scene::Scene& scene, const engine::Surf
   };
   msg::SurfaceDescription message;
   message.name(name_of(scene, surface.mat));
-  message.kind(static_cast<msg::SurfaceKind>(surface.kind));
+  message.kind(kind_of(surface));
   message.centre_m(shown(scene.network.mats[surface.mat].position));
+  if (message.kind() == msg::SURFACE_INNER_FACE) return message;
   if (surface.kind == engine::SurfaceKind::kBox) {
     std::vector<double> size;
     for (const double half : surface.half_size) size.push_back(whole_of(half));

@@ -309,6 +309,54 @@ TEST(SurfaceShape, OfAPlaneThatMovesAlongItselfGoesAlong) {
   }
 }
 
+TEST(SurfaceShape, OfAHollowBodyIsItsInnerSidesBehindAllMatter) {
+  const Box home{{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
+  const std::vector<double> middle = {0.0, 0.1, 0.0};
+  const std::vector<double> up = {0.0, 1.0, 0.0};
+  const Surfaces hollow = {
+      test::surface("can", msg::SURFACE_HOLLOW_BOX, middle, {}, {0.2, 0.1, 0.3}),
+      test::surface("can", msg::SURFACE_INNER_FACE, middle, {}, {}),
+      test::surface("tube", msg::SURFACE_HOLLOW_CYLINDER, middle, up, {0.1, 0.4})};
+  const Surfaces solid = {test::surface("can", msg::SURFACE_BOX, middle, {}, {0.2, 0.1, 0.3}),
+                          test::surface("tube", msg::SURFACE_CYLINDER, middle, up, {0.1, 0.4})};
+  const std::vector<SurfaceShape> inner = shapes_of(hollow, home, 3);
+  const std::vector<SurfaceShape> outer = shapes_of(solid, home, 3);
+  ASSERT_EQ(inner.size(), 3u);
+  EXPECT_TRUE(inner[1].faces.empty() && inner[1].edges.empty());
+  for (const auto& [of_hollow, of_solid] : {std::pair{inner[0], outer[0]}, {inner[2], outer[1]}}) {
+    EXPECT_TRUE(of_hollow.is_backdrop);
+    ASSERT_EQ(of_hollow.faces.size(), of_solid.faces.size());
+    for (std::size_t i = 0; i < of_hollow.faces.size(); ++i) {
+      EXPECT_EQ(of_hollow.faces[i].normal, -1.0 * of_solid.faces[i].normal);
+      EXPECT_EQ(of_hollow.faces[i].corners.front(), of_solid.faces[i].corners.back());
+    }
+  }
+  EXPECT_EQ(inner[0].edges.size(), 12u);
+  EXPECT_EQ(inner[2].edges.size(), 2u * 48u) << "its two circles";
+  EXPECT_EQ(bounds_with(hollow, home, 3).high, bounds_with(solid, home, 3).high);
+  const std::vector<SurfaceShape> flat = shapes_of(hollow, home, 2);
+  EXPECT_TRUE(flat[0].faces.empty());
+  EXPECT_EQ(flat[0].edges.size(), 4u);
+}
+
+TEST(SurfaceFigure, ShowsABallInAHollowBox) {
+  for (const auto kind : {msg::SURFACE_HOLLOW_BOX, msg::SURFACE_BOX}) {
+    const BallScene scene =
+        ball_scene({{0.0, 0.0, 0.0}}, 0.02F, 3,
+                   {test::surface("box", kind, {0.0, 0.0, 0.0}, {}, {0.2, 0.2, 0.2})});
+    FilmView view(scene.description, {.width = 320, .height = 180, .view = ViewPreset::kFront});
+    Image image = view.draw(scene.frame);
+    int ball_pixels = 0;
+    for (int y = 40; y < 140; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const std::uint8_t* pixel = image.pixel(x, y);
+        ball_pixels += pixel[2] > pixel[0] + 40 ? 1 : 0;  // the first body is blue
+      }
+    }
+    EXPECT_EQ(ball_pixels > 20, kind == msg::SURFACE_HOLLOW_BOX) << ball_pixels;
+  }
+}
+
 TEST(SurfaceBounds, CountBodiesWholeAndPlanesByTheirNearestPlace) {
   const Box matter{{-0.1, 0.0, -0.1}, {0.1, 0.2, 0.1}};
   const auto with = [&](const msg::SurfaceDescription& surface) {

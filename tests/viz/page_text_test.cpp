@@ -67,13 +67,19 @@ TEST(PageText, DescribesSurfacesByTheirKinds) {
   description.surfaces(
       {test::surface("floor", msg::SURFACE_PLANE, {0.0, -1.0, 0.0}, {0.0, 1.0, 0.0}, {}),
        test::surface("step", msg::SURFACE_BOX, {1.0, 2.0, 3.0}, {}, {0.5, 0.25, 0.0}),
-       test::surface("post", msg::SURFACE_CYLINDER, {4.0, 5.0, 6.0}, {1.0, 0.0, 0.0},
-                     {0.125, 2.0})});
-  description.surface_mat({0, 2, 1});
+       test::surface("post", msg::SURFACE_CYLINDER, {4.0, 5.0, 6.0}, {1.0, 0.0, 0.0}, {0.125, 2.0}),
+       test::surface("can", msg::SURFACE_HOLLOW_BOX, {0.0, 0.0, 0.0}, {}, {1.0, 1.0, 1.0}),
+       test::surface("can", msg::SURFACE_INNER_FACE, {0.0, 0.0, 0.0}, {}, {}),
+       test::surface("drum", msg::SURFACE_HOLLOW_CYLINDER, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0},
+                     {1.0, 0.0})});
+  description.surface_mat({0, 2, 1, 0, 1, 2});
   EXPECT_EQ(Json::parse(description_text(description, 1))["surfaces"], Json::parse(R"([
     {"name": "floor", "mat": 0, "kind": "plane", "centre": [0, -1, 0], "axis": [0, 1, 0], "size": []},
     {"name": "step", "mat": 2, "kind": "box", "centre": [1, 2, 3], "axis": [], "size": [0.5, 0.25, 0]},
-    {"name": "post", "mat": 1, "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]}])"));
+    {"name": "post", "mat": 1, "kind": "cylinder", "centre": [4, 5, 6], "axis": [1, 0, 0], "size": [0.125, 2]},
+    {"name": "can", "mat": 0, "kind": "hollow_box", "centre": [0, 0, 0], "axis": [], "size": [1, 1, 1]},
+    {"name": "can", "mat": 1, "kind": "inner_face", "centre": [0, 0, 0], "axis": [], "size": []},
+    {"name": "drum", "mat": 2, "kind": "hollow_cylinder", "centre": [0, 0, 0], "axis": [0, 0, 1], "size": [1, 0]}])"));
 }
 
 TEST(PageText, DescribesSetsWhosePairsHaveStates) {

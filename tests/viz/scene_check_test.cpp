@@ -69,6 +69,8 @@ TEST(SceneCheck, FindsWhatIsWrongWithADescription) {
       {"surface", [](auto& d) { d.surfaces()[5].axis().clear(); }},
       {"surface", [](auto& d) { d.surfaces()[5].size_m()[0] = 0.0; }},
       {"surface", [](auto& d) { d.surfaces()[5].kind(static_cast<msg::SurfaceKind>(9)); }},
+      {"surface", [](auto& d) { d.surfaces()[0].kind(msg::SURFACE_HOLLOW_BOX); }},
+      {"surface", [](auto& d) { d.surfaces()[0].kind(msg::SURFACE_HOLLOW_CYLINDER); }},
       {"MATs of surfaces", [](auto& d) { d.surface_mat().pop_back(); }},
       {"does not exist", [](auto& d) { d.surface_mat()[5] = 3; }},
       {"state machine", [](auto& d) { d.sets({bonding_set(0, 0)}); }},

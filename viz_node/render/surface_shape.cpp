@@ -254,6 +254,24 @@ std::vector<Point> circle_of(const Point& axis, const Point& from) {
   return directions;
 }
 
+/// The inner sides of a body: a viewer sees those behind what is inside, past the ones before it.
+SurfaceShape hollow_of(SurfaceShape shape) {
+  shape.is_backdrop = true;
+  for (SurfaceFace& face : shape.faces) {
+    std::ranges::reverse(face.corners);
+    face.normal = -1.0 * face.normal;
+  }
+  std::erase_if(shape.edges, [](const SurfaceEdge& edge) { return !edge.is_sharp; });
+  for (SurfaceEdge& edge : shape.edges) edge.face = edge.other_face = 0;
+  return shape;
+}
+
+/// The outline of a section alone.
+SurfaceShape outline_of(SurfaceShape shape) {
+  shape.faces.clear();
+  return shape;
+}
+
 /// The sides of a cylinder, then the cap towards its axis and the other one.
 SurfaceShape cylinder_of(const Surface& cylinder, const Box& home) {
   const Point axis = point_of(cylinder.axis());
@@ -395,6 +413,17 @@ std::vector<SurfaceShape> shapes_of(const std::vector<Surface>& surfaces, const 
       case msg::SURFACE_SEGMENT:
         shapes.push_back(segment_of(surface, level));
         break;
+      case msg::SURFACE_HOLLOW_BOX:
+        shapes.push_back(is_flat ? outline_of(box_section(surface, home, level))
+                                 : hollow_of(box_of(surface, home)));
+        break;
+      case msg::SURFACE_HOLLOW_CYLINDER:
+        shapes.push_back(is_flat ? outline_of(cylinder_section(surface, home, level))
+                                 : hollow_of(cylinder_of(surface, home)));
+        break;
+      case msg::SURFACE_INNER_FACE:
+        shapes.emplace_back();
+        break;
     }
   }
   return shapes;
@@ -409,8 +438,9 @@ Box bounds_with(const std::vector<Surface>& surfaces, const Box& matter, std::ui
     if (std::sqrt(dot(away, away)) <= farthest) box = box.united(there);
   };
   for (const Surface& surface : surfaces) {
+    if (surface.kind() == msg::SURFACE_INNER_FACE) continue;
     const Point centre = point_of(surface.centre_m());
-    if (surface.kind() == msg::SURFACE_BOX) {
+    if (surface.kind() == msg::SURFACE_BOX || surface.kind() == msg::SURFACE_HOLLOW_BOX) {
       Box there = matter;
       for (std::size_t k = 0; k < space; ++k) {
         const Span span = span_of(surface, matter, k, 0.0);

@@ -25,7 +25,7 @@ struct SurfaceEdge {
 };
 
 struct SurfaceShape {
-  /// A plane, or a section of a flat scene: it stands behind all matter.
+  /// A plane, the inner sides of a hollow body, or a section of a flat scene: it stands behind all matter.
   bool is_backdrop = true;
   std::vector<SurfaceFace> faces;
   std::vector<SurfaceEdge> edges;
@@ -33,7 +33,8 @@ struct SurfaceShape {
 
 /// The shapes of the surfaces around a scene in `home`. A plane is a grid as large as the scene, cut
 /// off where another plane is. What has no bound in a direction reaches past the scene. A scene of one
-/// or two dimensions has sections: lines with their inner side hatched, and filled outlines.
+/// or two dimensions has sections: lines with their inner side hatched, and filled outlines. A hollow body shows
+/// its inner sides, in a flat scene its outline; what stands for an inner face by itself is empty.
 /// @param space  dimensions of the scene, 1 to 3
 std::vector<SurfaceShape> shapes_of(const std::vector<msg::SurfaceDescription>& surfaces,
                                     const Box& home, std::uint32_t space);

@@ -109,9 +109,9 @@ export interface ColouredRange {
 export interface Surface {
   name: string;
   mat: number | null; // it is at `centre` in each frame; null: there is none
-  kind: 'plane' | 'box' | 'cylinder' | 'segment';
+  kind: 'plane' | 'box' | 'cylinder' | 'segment' | 'hollow_box' | 'hollow_cylinder' | 'inner_face';
   centre: number[]; // x, y, z [m] at the start; a point of a plane
-  axis: number[]; // unit vector: the normal of a plane on its outer side, the direction of a segment; empty for a box
+  axis: number[]; // unit vector: the normal of a plane on its outer side, the direction of a segment; empty for a box and an inner face
   size: number[]; // box: edges x, y, z [m], 0 where it has no end; cylinder: radius, length; segment: length
 }
 

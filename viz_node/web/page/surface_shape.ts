@@ -98,9 +98,20 @@ export function shapesOf(surfaces: Surface[], home: Box3, space: number): Surfac
       const [from, to] = endsOf(surface);
       return { faces: [], edges: [[from.setZ(level), to.setZ(level)]] };
     }
-    if (surface.kind === 'box') return space < 3 ? boxSection(surface, home, level) : boxOf(surface, home);
-    return space < 3 ? cylinderSection(surface, home, level) : cylinderOf(surface, home);
+    if (surface.kind === 'inner_face') return { faces: [], edges: [] }; // its body shows it
+    const shape = isBox(surface)
+      ? space < 3 ? boxSection(surface, home, level) : boxOf(surface, home)
+      : space < 3 ? cylinderSection(surface, home, level) : cylinderOf(surface, home);
+    return surface.kind.startsWith('hollow') ? hollowOf(shape, space) : shape;
   });
+}
+
+const isBox = ({ kind }: Surface): boolean => kind === 'box' || kind === 'hollow_box';
+
+/** The inner sides of a body: a viewer sees those behind what is inside, past the ones before it. Of a section the outline. */
+function hollowOf({ faces, edges }: SurfaceShape, space: number): SurfaceShape {
+  if (space < 3) return { faces: [], edges };
+  return { faces: faces.map(({ corners, normal }) => ({ corners: [...corners].reverse(), normal: normal.clone().negate() })), edges };
 }
 
 /** The box around `matter` and the surfaces. What is unbounded counts by its nearest place, where that is near. */
@@ -110,9 +121,10 @@ export function boundsWith(surfaces: Surface[], matter: Box3, space: number): Bo
   const farthest = NEAR_DIAGONALS * sizeOf(matter).length();
   const uniteNear = (foot: Vector3, there: Box3) => foot.distanceTo(middle) <= farthest && box.union(there);
   for (const surface of surfaces) {
+    if (surface.kind === 'inner_face') continue;
     const [centre, axis] = [vectorOf(surface.centre), vectorOf(surface.axis)];
     const along = middle.clone().sub(centre).dot(axis);
-    if (surface.kind === 'box') {
+    if (isBox(surface)) {
       const spans = [0, 1, 2].map((k) => spanOf(surface, matter, k, 0));
       box.union(new Box3(vectorOf(spans.map(({ low }) => low)), vectorOf(spans.map(({ high }) => high))));
     } else if (surface.kind === 'segment') {
