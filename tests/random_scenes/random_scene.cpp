@@ -36,7 +36,9 @@ class SceneWriter {
         random_of_bodies_(seed ^ 0x165667b1U),
         random_of_shells_(seed ^ 0x27d4eb2fU),
         random_of_parameters_(seed ^ 0x68e31da4U),
-        random_of_still_matter_(seed ^ 0x9e3779b9U) {
+        random_of_still_matter_(seed ^ 0x9e3779b9U),
+        random_of_hollows_(seed ^ 0x94d049bbU),
+        random_of_rest_(seed ^ 0xbf58476dU) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -64,9 +66,10 @@ class SceneWriter {
     RandomParts added;
     if (matter_ != Matter::kModes) added = random_parts(seed_, space_, laws_of_parts());
     if (space_ > 1) perhaps_add_still_matter(added.parts.empty());
-    return head_ + world() + parts_ + added.parts + "liaisons:\n" + liaisons_ + added.liaisons +
-           "matter:\n" + masses_ + added.matter + (port_.empty() ? "" : "ports:\n" + port_) +
-           "links:\n" + links_ + added.links + R"(signals:
+    return head_ + world() + perhaps_settle() + parts_ + added.parts + "liaisons:\n" + liaisons_ +
+           added.liaisons + "matter:\n" + masses_ + added.matter +
+           (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + added.links +
+           R"(signals:
   lively: {quantity: kinetic_energy}
   middle: {of: p, quantity: center_of_mass, axis: x}
   fastest: {of: p, quantity: speed, take: largest}
@@ -1105,6 +1108,45 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return ", line";
   }
 
+  /// A hollow box or cylinder about all masses or some, in four scenes of ten. @return how it goes on in a list of
+  /// surfaces
+  std::string hollow() {
+    const auto between = [this](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_of_hollows_()) / 4294967296.0;
+    };
+    if (between(0.0, 1.0) > 0.4) return {};
+    const bool is_round = space_ > 1 && between(0.0, 1.0) < 0.5;
+    const auto numbers = [&](double low, double high) {
+      std::string text;
+      for (int axis = 0; axis < space_; ++axis)
+        text += fmt::format("{}{:.5g}", axis > 0 ? ", " : "", between(low, high));
+      return space_ > 1 ? "[" + text + "]" : text;
+    };
+    std::string body = fmt::format("{{kind: {}, center_m: {}, sides: both",
+                                   is_round ? "cylinder" : "box", numbers(-0.1, 0.1));
+    if (is_round) {
+      body += fmt::format(", radius_m: {:.5g}", between(0.03, 0.5));
+      if (space_ == 3 && between(0.0, 1.0) < 0.5)
+        body += fmt::format(", axis: [1, 2, 0], length_m: {:.5g}", between(0.1, 1.0));
+      else if (space_ == 3)
+        body += ", axis: y";
+    } else {
+      body += ", size_m: " + numbers(0.05, 1.0);
+    }
+    masses_ += "  hollow: " + perhaps_driven(body + "}") + "\n";
+    return ", hollow";
+  }
+
+  /// In one scene of twelve the scene is asked to settle. Not every one comes to rest.
+  std::string perhaps_settle() {
+    const auto between = [this](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_of_rest_()) / 4294967296.0;
+    };
+    if (between(0.0, 1.0) > 1.0 / 12.0) return {};
+    return fmt::format("settle: {{until_n: {:.3g}, steps: 5000, friction: {}}}\n",
+                       std::pow(10.0, between(-9.0, -2.0)), between(0.0, 1.0) < 0.7);
+  }
+
   /// A surface in eight is shaken.
   std::string perhaps_driven(std::string surface) {
     if (matter_ == Matter::kPotentials || drive_between(0.0, 1.0) > 0.125) return surface;
@@ -1155,6 +1197,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
       names += fmt::format("{}f{}", s > 0 ? ", " : "", s);
     }
     if (space_ == 2) names += polyline();
+    names += hollow();
     std::string law;
     do {
       law = matter_ != Matter::kPotentials && chance(0.3) ? state_machine() : one_state();
@@ -1187,6 +1230,8 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_shells_;        // likewise
   std::mt19937 random_of_parameters_;    // likewise
   std::mt19937 random_of_still_matter_;  // likewise
+  std::mt19937 random_of_hollows_;       // likewise
+  std::mt19937 random_of_rest_;          // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses

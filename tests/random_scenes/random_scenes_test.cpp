@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/checks/partner_watch.h"
+#include "sim_node/checks/settling.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/plan.h"
@@ -67,6 +68,9 @@ scene::Scene scene_of(std::uint32_t seed) {
   scene::Scene scene =
       scene::load_scene_text(random_scene_text(seed), "seed " + std::to_string(seed), problems);
   EXPECT_FALSE(problems.has_errors()) << problems.text() << "\n" << random_scene_text(seed);
+  // What does not come to rest begins as it is written.
+  config::Problems refusals;
+  if (!problems.has_errors()) sim::settle(scene, refusals);
   return scene;
 }
 
@@ -688,6 +692,32 @@ double parting_of(const NetworkDescription& scene) {
     most = std::isfinite(now) ? std::max(most, now) : std::numeric_limits<double>::infinity();
   }
   return most / before;
+}
+
+/// Without speeds, and with a step in which nothing moves. What is driven would drag at its dampers.
+TEST(RandomScenes, BeginAtRestWhereTheySettle) {
+  std::uint32_t settled = 0;
+  for (const std::uint32_t seed : seeds()) {
+    const scene::Scene scene = scene_of(seed);
+    if (!scene.settled || !scene.network.drives.empty()) continue;
+    NetworkDescription network = scene.network;
+    network.integrator = engine::IntegratorKind::kCordis;
+    network.freeze_tolerance = 0.0;
+    network.step = 1e-14;
+    for (engine::Mat& mat : network.mats) mat.velocity.setZero();
+    World probe = world_of(network);
+    probe.step();
+    if (!probe.events().empty()) continue;
+    ++settled;
+    for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
+      const engine::Mat& mat = network.mats[i];
+      if (mat.kind != MatKind::kMass) continue;
+      const Vec3 force = probe.link_force(i) + mat.mass * network.gravity_on(mat);
+      ASSERT_LT(force.norm(), 1.001 * scene.settle->until) << named(seed);
+    }
+  }
+  EXPECT_GT(settled, kCount / 100);
+  RecordProperty("settled", static_cast<int>(settled));
 }
 
 TEST(RandomScenes, SurelyUnstableStatesGrowTenfold) {
