@@ -42,9 +42,9 @@ struct Surface {
       Vec3::Zero();  ///< [m], > 0, infinite without an end: half edges of a box along x, y, z;
                      ///< radius, half length of a cylinder; half length of a segment; of an
                      ///< inner face, those of its body
-  bool both_sides =
-      false;  ///< the distance has no sign, and the normal points to the MAT: a plane, or
-              ///< the outside of a hollow body; of the kinds after these it is so without it
+  /// The distance has no sign, and the normal points to the MAT: of a plane, or of the outside of a hollow body.
+  /// Segments and inner faces are so without it.
+  bool both_sides = false;
   Vec3 comes_from =
       Vec3::Zero();  ///< axis of the segment that ends at the start of this one, and turns by less
                      ///< than a right angle there: on the outer side of that corner it acts alone

@@ -67,8 +67,8 @@ struct Zone {
   Surface core;
   Vec3 centre;
   double margin = 0.0;
-  double hole =
-      -kNoEnd;  ///< nearer to the axis of a cylinder than this, its round wall is out of reach [m]
+  /// Nearer to the axis of a cylinder than this, its round wall is out of reach [m].
+  double hole = -kNoEnd;
 
  private:
   /// Leaves of the core what is nearer than the reach to the face at its lower end, seen along its normal.
