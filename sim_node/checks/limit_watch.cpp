@@ -40,6 +40,8 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity[i]) * weight[i];
   }
+  for (const plan::ForceBound& force : graph.forces)
+    steady_[force.mat] += number(force.stiffness, force.viscosity) * weight[force.mat];
   for (const plan::Edge& edge : graph.edges) {
     if (edge.liaison.kind == plan::LiaisonKind::kStateLink) continue;
     const double both = weight[edge.mat_a] + weight[edge.mat_b];

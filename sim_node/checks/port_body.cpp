@@ -24,6 +24,9 @@ std::vector<double> outer_viscosities(const plan::LiaisonGraph& graph, const sce
                                       LoadBound bound) {
   std::vector<bool> is_inside(graph.inverse_mass.size());
   std::vector<double> of_mat = graph.medium_viscosity;
+  for (const plan::ForceBound& force : graph.forces) {
+    if (bound == LoadBound::kMax) of_mat[force.mat] += force.viscosity;
+  }
   for (const scene::BodyMass& mass : port.body) is_inside[mass.mat] = true;
   for (const plan::Edge& edge : graph.edges) {
     if (is_inside[edge.mat_a] == is_inside[edge.mat_b]) continue;

@@ -34,7 +34,7 @@ void settle(scene::Scene& scene, config::Problems& problems) {
   const scene::Settle& asked = *scene.settle;
   if (plan::rest_is_open(scene.network)) {
     problems.error(asked.place,
-                   "a scene whose laws ask for more than time_s has no rest to settle to",
+                   "a scene whose laws or forces ask for more than time_s has no rest to settle to",
                    "leave out 'settle', or let its parameters ask for time_s alone");
     return;
   }

@@ -134,6 +134,9 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
           contact.neighbours[m] * (weight[mat] + most));
     }
   }
+  for (const plan::ForceBound& force : graph.forces) {
+    if (force.mat == mat) add(force.liaison, force.stiffness, force.viscosity, weight[mat]);
+  }
   if (!liaison) return "nothing but what is given from outside moves it";
   const scene::Called called = scene::call_liaison(scene, liaison);
   const std::string name = called.name + " (" + scene::place_text(called.place) + ")";

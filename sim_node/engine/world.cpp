@@ -37,9 +37,11 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   const FloatMode mode;
   state_ = std::make_unique<WorldState>(std::move(network), width);
   state_->port_inputs.begin(state_->mats);
-  if (state_->laws_ask_for_variables) {
+  if (state_->laws_ask_for_variables || state_->drives_ask_for_variables) {
     read_variables(state_->description().variables, *this, state_->table.variables());
   }
+  // The masses are where the network has them, and no integrator knows their velocities yet.
+  state_->port_inputs.find_driven_forces(0, state_->table.variables().data());
   state_->scheme->start(*state_);
   make_room();
 }

@@ -165,6 +165,7 @@ bool comes_and_goes(const engine::NetworkDescription& network, LiaisonId liaison
     case LiaisonKind::kLink:
     case LiaisonKind::kMaxwellLink:
     case LiaisonKind::kBend:
+    case LiaisonKind::kForce:
       return false;
   }
   return false;
@@ -324,9 +325,12 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
     contact.stiffness = 0.0;
   }
   double of_medium = 0.0;
+  std::vector<double> to_ground = graph.medium_viscosity;
+  for (const ForceBound& force : graph.forces) to_ground[force.mat] += force.viscosity;
   for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
-    of_medium = std::max(of_medium, graph.medium_viscosity[i] * graph.inverse_mass[i]);
+    of_medium = std::max(of_medium, to_ground[i] * graph.inverse_mass[i]);
   }
+  for (ForceBound& force : dampers.forces) force.stiffness = 0.0;
   const double of_dampers = 2.0 / edge_bound(dampers).step;  // 2 dt Z = 4
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
@@ -356,6 +360,8 @@ std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& n
     consider({LiaisonKind::kSet, contact.set}, contact.variation,
              lightest(graph, contact.members) + lightest(graph, contact.others));
   }
+  for (const ForceBound& force : graph.forces)
+    consider(force.liaison, force.variation, graph.inverse_mass[force.mat]);
   return most;
 }
 
@@ -370,6 +376,7 @@ double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGrap
   std::ranges::fill(graph.medium_viscosity, 0.0);
   for (Edge& edge : graph.edges) edge.viscosity = 0.0;
   for (ContactBound& contact : graph.contacts) contact.viscosity = 0.0;
+  for (ForceBound& force : graph.forces) force.viscosity = 0.0;
   return std::min(row_weights(graph, network.step).number, kMaxNumber);
 }
 

@@ -43,6 +43,26 @@ void stop_time(engine::Law& law) {
   }
 }
 
+/// A driven force as it is at step 0 on a MAT at rest, wherever that is. Precondition: it asks for no variable
+/// but the time.
+void stop_time(engine::TimeFunction& function) {
+  if (is_of_time(function)) {
+    function = {{}, {0.0}, {value_at(function, 0.0)}, false};  // a table of one value stays at it
+    return;
+  }
+  const auto changes = [](const engine::Instruction& instruction) {
+    return instruction.operation == engine::Operation::kVariable ||
+           (instruction.operation == engine::Operation::kQuantity &&
+            std::ranges::find(engine::kPlaceInForce, instruction.quantity) ==
+                engine::kPlaceInForce.end());
+  };
+  for (engine::Program& formula : function.formula) {
+    for (engine::Instruction& instruction : formula.code) {
+      if (changes(instruction)) instruction = {engine::Operation::kConstant, {}, 0.0, 0};
+    }
+  }
+}
+
 /// The network without all that acts only while something moves.
 NetworkDescription undamped(NetworkDescription network, bool has_friction) {
   network.integrator = engine::IntegratorKind::kCordis;
@@ -52,9 +72,8 @@ NetworkDescription undamped(NetworkDescription network, bool has_friction) {
   std::erase_if(network.drives, [](const engine::Drive& drive) { return !drive.is_force; });
   for (const engine::Surface& surface : network.surfaces)
     network.mats[surface.mat].kind = MatKind::kFixed;
-  for (engine::TimeFunction& function : network.time_functions) {
-    function = {{}, {0.0}, {value_at(function, 0.0)}, false};  // a table of one value stays at it
-  }
+  std::ranges::for_each(network.time_functions,
+                        [](engine::TimeFunction& function) { stop_time(function); });
   for (engine::Mat& mat : network.mats) {
     mat.velocity = Vec3::Zero();
     mat.medium_viscosity = engine::Mat::kOfNetwork;
@@ -93,11 +112,13 @@ bool rubs(const NetworkDescription& network) {
   });
 }
 
-/// Weights and driven forces of the start [N], per MAT.
+/// Driven forces where the MATs of an undamped network are [N], per MAT.
 std::vector<Vec3> loads_of(const NetworkDescription& network) {
   std::vector<Vec3> load(network.mats.size(), Vec3::Zero());
   for (const engine::Drive& drive : network.drives) {
-    if (drive.is_force) load[drive.mat] += value_at(network, drive, 0.0);
+    engine::FunctionPoint point;
+    point.position = network.mats[drive.mat].position;
+    load[drive.mat] += force_at(network, drive, point);
   }
   return load;
 }
@@ -107,7 +128,6 @@ class Rest {
  public:
   Rest(const NetworkDescription& network, bool has_friction)
       : network_(undamped(network, has_friction)),
-        driven_(loads_of(network)),
         has_friction_(rubs(network_)),
         slides_on_(network.mats.size()) {}
 
@@ -149,11 +169,12 @@ class Rest {
     for (const engine::SetLiaison& set : network_.sets) pose.stretches.push_back(set.stretches);
     pose.steps = steps_;
     pose.is_finite = is_finite_;
+    const std::vector<Vec3> driven = loads_of(network_);
     for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
       const engine::Mat& mat = network_.mats[i];
       pose.position.push_back(mat.position);
       if (mat.kind != MatKind::kMass) continue;
-      const Vec3 load = mat.mass * network_.gravity_on(mat) + driven_[i];
+      const Vec3 load = mat.mass * network_.gravity_on(mat) + driven[i];
       const double force = (world_->link_force(i) + load).norm();
       if (!(force > pose.force)) continue;
       pose.force = force;
@@ -188,7 +209,6 @@ class Rest {
   }
 
   NetworkDescription network_;
-  std::vector<Vec3> driven_;  // force on each [N]
   bool has_friction_;
   Eigen::Matrix4Xd before_;  // positions with the forces and the friction of the last step [m]
   std::vector<std::optional<std::uint32_t>> slides_on_;  // each, as it was held
@@ -230,17 +250,21 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
 }  // namespace
 
 bool rest_is_open(const NetworkDescription& network) {
-  const auto asks_for_more = [&network](const engine::StateMachine& machine) {
+  const auto is_open = [&network](const engine::Program& program) {
+    return std::ranges::any_of(program.code, [&network](const engine::Instruction& instruction) {
+      return instruction.operation == engine::Operation::kVariable &&
+             network.variables[instruction.slot].quantity != engine::VariableKind::kTime;
+    });
+  };
+  const auto asks_for_more = [&is_open](const engine::StateMachine& machine) {
     const auto* expression =
         std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
-    if (expression == nullptr) return false;
-    return std::ranges::any_of(
-        expression->program.code, [&network](const engine::Instruction& instruction) {
-          return instruction.operation == engine::Operation::kVariable &&
-                 network.variables[instruction.slot].quantity != engine::VariableKind::kTime;
-        });
+    return expression != nullptr && is_open(expression->program);
   };
-  return std::ranges::any_of(network.state_machines, asks_for_more);
+  return std::ranges::any_of(network.state_machines, asks_for_more) ||
+         std::ranges::any_of(network.time_functions, [&is_open](const engine::TimeFunction& f) {
+           return std::ranges::any_of(f.formula, is_open);
+         });
 }
 
 Settled settle(const NetworkDescription& network, const Settling& asked) {

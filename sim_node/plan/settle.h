@@ -29,15 +29,15 @@ struct Settled {
   bool is_rounding = false;                ///< what pulls falls no more, and is rounding
 };
 
-/// True if the law of a state of the start asks for a variable other than the time: then no pose is at rest for
-/// the values of the start alone, and settle() takes no such network.
+/// True if the law of a state of the start or a driven force asks for a variable other than the time: then no pose
+/// is at rest for the values of the start alone, and settle() takes no such network.
 bool rest_is_open(const engine::NetworkDescription& network);
 
 /// Lets a network come to rest from its start, without dampers, medium and velocities. It moves by
 /// `cordis` at its step, or a shorter one where that diverges. It is held still whenever its kinetic
 /// energy falls (kinetic damping). Each liaison stays in its state of the start; a
 /// Maxwell element keeps its start force. Ports and what is driven stay, and driven forces are those
-/// of the start, as are laws of the time. Friction begins with the stretches of the start, and keeps its own while
+/// of the start, as are laws of the time; one that depends on the place is that of the place. Friction begins with the stretches of the start, and keeps its own while
 /// all is held still. Every vector width finds the same bits.
 /// Precondition: !rest_is_open(network).
 Settled settle(const engine::NetworkDescription& network, const Settling& asked);

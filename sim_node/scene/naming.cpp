@@ -23,7 +23,8 @@ Called call_mat(const Scene& scene, std::uint32_t mat) {
 }
 
 Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison) {
-  if (!liaison) return {"the viscosity of the medium", {}};
+  constexpr const char* kMedium = "the viscosity of the medium";
+  if (!liaison) return {kMedium, {}};
   const engine::NetworkDescription& network = scene.network;
   const auto linear = static_cast<std::uint32_t>(network.links.size());
   const auto with_states = static_cast<std::uint32_t>(network.state_links.size());
@@ -39,6 +40,13 @@ Called call_liaison(const Scene& scene, std::optional<engine::LiaisonId> liaison
       return {scene.set_names[index] + " of sets", scene.set_places[index]};
     case engine::LiaisonKind::kBend:
       return call(scene.bends, index, "bend");
+    case engine::LiaisonKind::kForce: {
+      const engine::Drive& drive = network.drives[index];
+      if (drive.function == scene.gravity_function) return {"the gravity of the world", {}};
+      if (drive.function == scene.medium_function) return {kMedium, {}};
+      const Called mat = call_mat(scene, drive.mat);
+      return {"the force on " + mat.name, mat.place};
+    }
   }
   return {};
 }

@@ -303,7 +303,9 @@ Outcome Parameters::set_of_world(const std::string& parameter, double value) {
   const std::vector<std::string> axes = gravity_words(scene_->space());
   const auto axis = std::find(axes.begin(), axes.end(), parameter);
   if (std::find(words.begin(), words.end(), parameter) == words.end()) {
-    if (axis != axes.end()) return refused("gravity follows a formula of time in this scene");
+    if (axis != axes.end()) return refused("gravity follows a formula in this scene");
+    if (parameter == kMediumViscosity && scene_->medium_changes)
+      return refused("the viscosity of the medium follows a formula in this scene");
     if (parameter == kMediumViscosity)
       return refused("the medium flows, so its viscosity keeps its value while a run goes on");
     return refused("'" + std::string(kWorld) + "' has no parameter '" + parameter + "'",
@@ -325,7 +327,8 @@ std::vector<std::pair<std::string, double>> Parameters::values_of_world() const 
     for (const std::string& word : gravity_words(scene_->space()))
       values.emplace_back(word, gravity_[static_cast<Eigen::Index>(values.size())]);
   }
-  if (!scene_->medium_flows) values.emplace_back(kMediumViscosity, medium_viscosity_);
+  if (!scene_->medium_flows && !scene_->medium_changes)
+    values.emplace_back(kMediumViscosity, medium_viscosity_);
   return values;
 }
 

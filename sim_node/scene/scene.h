@@ -164,8 +164,12 @@ struct Scene {
   double frame_rate_hz = 0.0;    ///< frames for the display per second, at most the gesture rate
   engine::NetworkDescription network;          ///< its dimension is the `space` of the file
   std::vector<AskedVariable> asked_variables;  ///< per variable of the network
-  bool gravity_changes = false;  ///< gravity follows formulas of time: forces, not `gravity`
+  bool gravity_changes = false;  ///< gravity follows formulas: driven forces, not `gravity`
   bool medium_flows = false;
+  bool medium_changes = false;  ///< likewise the viscosity of the medium
+  /// The time functions of the network that these formulas are.
+  std::optional<std::uint32_t> gravity_function = {};
+  std::optional<std::uint32_t> medium_function = {};
   std::vector<NamedRange> matter;  ///< names of MATs in the order of the indices; a port has one
                                    ///< MAT
   std::vector<NamedRange> links;   ///< names of links in the order of their numbers; see

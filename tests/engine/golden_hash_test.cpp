@@ -175,6 +175,41 @@ World blown_rods(VectorWidth width) {
   return world;
 }
 
+/// 3 dimensions: a net in a well that turns about an axis, with a drag that one of its masses sets.
+World whirled_net(VectorWidth width, IntegratorKind integrator) {
+  NetworkDescription scene;
+  scene.step = 5e-4;
+  scene.integrator = integrator;
+  engine::Variable leader;
+  leader.quantity = engine::VariableKind::kPosition;
+  leader.index = 24;
+  leader.direction = Vec3::UnitX();
+  scene.variables = {leader};
+  Term drag(0.0);
+  drag.program.code = {{engine::Operation::kVariable, engine::Quantity::kDistance, 0.0, 0}};
+  drag = Term(0.01) + Term(0.01) * drag * drag;
+  const auto force = [&](std::size_t axis, const Term& whirl) {
+    return (Term(-2.0) * q(engine::kPlaceInForce[axis]) + whirl -
+            drag * q(engine::kVelocityInForce[axis]))
+        .program;
+  };
+  engine::TimeFunction field;
+  field.formula = {force(0, Term(-0.5) * q(engine::kPlaceInForce[1])),
+                   force(1, Term(0.5) * q(engine::kPlaceInForce[0])), force(2, Term(0.0))};
+  scene.time_functions = {field};
+  for (std::uint32_t i = 0; i < 49; ++i) {
+    const Vec3 place(0.1 * (i % 7), 0.1 * (i / 7) - 0.2, 0.05 * scattered(i));
+    scene.mats.push_back(mass(0.02 + 0.01 * scattered(i + 49), place));
+    if (i % 7 > 0) scene.links.push_back({i - 1, i, 60.0, 0.01, 0.1});
+    if (i > 6) scene.links.push_back({i - 7, i, 60.0, 0.01, 0.1});
+    scene.drives.push_back({i, 0, true});
+  }
+  World world = make_world(scene, width);
+
+  run(world, 2000);
+  return world;
+}
+
 /// 2 dimensions: a melt, at surfaces too.
 World melt(VectorWidth width, IntegratorKind integrator) {
   NetworkDescription scene = cloud(60, 0.9, 1.0, 2, 23);
@@ -234,6 +269,8 @@ TEST_P(GoldenHash, OfSetsSurfacesFrictionAndDrivesStays) {
 
 TEST_P(GoldenHash, OfBendsAndDrivenForcesStays) {
   expect(blown_rods(GetParam()), "blown_rods");
+  expect(whirled_net(GetParam(), IntegratorKind::kCordis), "whirled_net");
+  expect(whirled_net(GetParam(), IntegratorKind::kLeapfrog), "leapfrog_whirled_net");
 }
 
 TEST_P(GoldenHash, OfTheOtherIntegratorsStays) {

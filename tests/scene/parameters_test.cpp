@@ -163,7 +163,7 @@ matter: {bob: {kind: mass, mass_kg: 1, at_m: 0}}
 )"));
   Parameters parameters(scene);
   EXPECT_EQ(parameters.set("world", "gravity_m_per_s2", 1.0).problem,
-            "gravity follows a formula of time in this scene");
+            "gravity follows a formula in this scene");
   EXPECT_EQ(parameters.set("world", "viscosity_n_s_per_m", 2.0).problem,
             "the medium flows, so its viscosity keeps its value while a run goes on");
   EXPECT_TRUE(parameters.get("world").entries.empty());

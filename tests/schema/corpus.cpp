@@ -137,7 +137,7 @@ parts:
       rim: {kind: string, count: 3, mass_kg: 0.1, from_m: [1, 0], to_m: [2, 0], ends: $ends, stiffness_n_per_m: 10}
 matter:
   one: {kind: mass, mass_kg: 0.1, at_m: [[0, 0], [1, 0]], velocity_m_per_s: [0, 0], drawn_radius_m: 0.01, fixed: true, color: '#ff8800'}
-  pushed: {kind: mass, displacement_m: [0, 0], mass_kg: 0.1, at_m: [0, 3], driven: {force_n: [sin(time_s), 0]}}
+  pushed: {kind: mass, displacement_m: [0, 0], mass_kg: 0.1, at_m: [0, 3], driven: {force_n: [sin(time_s) - x_m, 0]}}
   some: {kind: points, displacement_m: [0, 0], at_m: [[2, 0], [3, 0]], mass_kg: [0.1, 0.2], velocity_m_per_s: [[0, 0], [0, 0]], radius_m: 0.01, fixed: [0]}
   string: {kind: string, displacement_m: [0, 0], count: 4, mass_kg: 0.01, from_m: [4, 0], to_m: [5, 0], ends: fixed, stiffness_n_per_m: 100, tension_n: 1}
   loop: {kind: ring, displacement_m: [0, 0], velocity_m_per_s: [0, 0], count: 8, mass_kg: 0.01, center_m: [6, 0], radius_m: 0.1, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.1}

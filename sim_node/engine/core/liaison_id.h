@@ -5,13 +5,15 @@
 
 namespace cordis::engine {
 
-/// Which list of a NetworkDescription a liaison stands in.
+/// Which list of a NetworkDescription a liaison stands in; a force on a MAT that depends on its motion counts
+/// as one to the ground.
 enum class LiaisonKind : std::uint8_t {
   kLink = 0,
   kStateLink = 1,
   kMaxwellLink = 2,
   kSet = 3,
-  kBend = 4
+  kBend = 4,
+  kForce = 5  ///< in `drives`
 };
 
 struct LiaisonId {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/description/network.h"
 
@@ -51,18 +52,78 @@ Vec3 in_table(const TimeFunction& table, double time) noexcept {
   return value;
 }
 
+/// True if a quantity may stand in a formula: the time, place and velocity along the axes there are.
+bool is_known_to_functions(Quantity quantity, int dimension) noexcept {
+  if (quantity == Quantity::kAge) return true;
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimension); ++axis) {
+    if (quantity == kPlaceInForce[axis] || quantity == kVelocityInForce[axis]) return true;
+  }
+  return false;
+}
+
+/// The transpose of the turn of a drive times a vector.
+Vec3 turned_back(const Drive& drive, const Vec3& value) noexcept {
+  const std::array<double, 9>& m = drive.turn;
+  return {m[0] * value.x() + m[3] * value.y() + m[6] * value.z(),
+          m[1] * value.x() + m[4] * value.y() + m[7] * value.z(),
+          m[2] * value.x() + m[5] * value.y() + m[8] * value.z()};
+}
+
+/// True if the turn of a drive keeps lengths and angles.
+bool is_rotation(const Drive& drive) noexcept {
+  constexpr double kRounding = 1e-9;
+  for (int axis = 0; axis < 3; ++axis) {
+    Drive plain = drive;
+    plain.is_force = true;
+    const Vec3 unit = Vec3::Unit(axis);
+    if (!((turned_back(drive, placed(plain, unit)) - unit).norm() < kRounding)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-Vec3 value_at(const TimeFunction& function, double time) noexcept {
-  if (!function.time.empty()) return in_table(function, time);
+bool asks_for_motion(const TimeFunction& function) noexcept {
+  return std::ranges::any_of(function.formula, [](const Program& formula) {
+    return std::ranges::any_of(formula.code, [](const Instruction& instruction) {
+      return instruction.operation == Operation::kQuantity &&
+             instruction.quantity != Quantity::kAge;
+    });
+  });
+}
+
+bool asks_for_variable(const TimeFunction& function) noexcept {
+  return std::ranges::any_of(function.formula,
+                             [](const Program& formula) { return asks_for_variable(formula); });
+}
+
+bool is_of_time(const TimeFunction& function) noexcept {
+  return !asks_for_motion(function) && !asks_for_variable(function);
+}
+
+Vec3 value_at(const TimeFunction& function, const FunctionPoint& point) noexcept {
+  if (!function.time.empty()) return in_table(function, point.time);
   LinkQuantities quantities{};
-  quantities[static_cast<std::size_t>(Quantity::kAge)] = time;
+  quantities[static_cast<std::size_t>(Quantity::kAge)] = point.time;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    quantities[static_cast<std::size_t>(kPlaceInForce[axis])] =
+        point.position[static_cast<int>(axis)];
+    quantities[static_cast<std::size_t>(kVelocityInForce[axis])] =
+        point.velocity[static_cast<int>(axis)];
+  }
   Vec3 value = Vec3::Zero();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Program& formula = function.formula[axis];
-    if (!formula.empty()) value[static_cast<int>(axis)] = value_of(formula, quantities);
+    if (formula.empty()) continue;
+    value[static_cast<int>(axis)] = value_of(formula, quantities, nullptr, 0.0, point.variables);
   }
   return value;
+}
+
+Vec3 value_at(const TimeFunction& function, double time) noexcept {
+  FunctionPoint point;
+  point.time = time;
+  return value_at(function, point);
 }
 
 double speed_bound_of_table(const TimeFunction& table) noexcept {
@@ -86,7 +147,17 @@ Vec3 placed(const Drive& drive, const Vec3& value) noexcept {
 }
 
 Vec3 value_at(const NetworkDescription& network, const Drive& drive, double time) noexcept {
+  CORDIS_ASSERT(is_of_time(network.time_functions[drive.function]));
   return placed(drive, value_at(network.time_functions[drive.function], time));
+}
+
+Vec3 force_at(const NetworkDescription& network, const Drive& drive,
+              const FunctionPoint& point) noexcept {
+  CORDIS_ASSERT(drive.is_force);
+  FunctionPoint local = point;
+  local.position = turned_back(drive, point.position - drive.origin);
+  local.velocity = turned_back(drive, point.velocity);
+  return placed(drive, value_at(network.time_functions[drive.function], local));
 }
 
 Vec3 start_of(const NetworkDescription& network, const Drive& drive) noexcept {
@@ -129,12 +200,12 @@ void check_time_function(const NetworkDescription& network, const TimeFunction& 
     require(function.time.empty(), name, "a table or formulas");
     require(static_cast<int>(axis) < network.dimension, name + ": formula",
             "none beyond the dimension of the network");
-    check_program(formula, name + ": formula");
+    check_program(formula, name + ": formula", network.variables.size());
     require(!has_edge(formula), name + ": formula", "one without rising and falling");
     for (const Instruction& instruction : formula.code) {
-      require(
-          instruction.operation != Operation::kQuantity || instruction.quantity == Quantity::kAge,
-          name + ": quantity", "the time");
+      require(instruction.operation != Operation::kQuantity ||
+                  is_known_to_functions(instruction.quantity, network.dimension),
+              name + ": quantity", "the time, or a place or velocity along an axis of the network");
     }
   }
   for (std::size_t i = 0; i < function.time.size(); ++i) {
@@ -158,7 +229,17 @@ void check_drive(const NetworkDescription& network, const Drive& drive, const st
           "a port for a position, a mass for a force");
   require(drive.origin.allFinite(), name + ": origin", "finite");
   for (const double value : drive.turn) require(std::isfinite(value), name + ": turn", "finite");
-  const Vec3 start = start_of(network, drive);
+  const TimeFunction& function = network.time_functions[drive.function];
+  if (!is_of_time(function)) {
+    require(drive.is_force, name + ": its function", "one of time alone for a position");
+    require(!asks_for_motion(function) || is_rotation(drive), name + ": turn",
+            "a rotation where its function asks for place or velocity");
+    if (asks_for_variable(function)) return;  // no values are known yet
+  }
+  FunctionPoint at_start;
+  at_start.position = mat.position;
+  at_start.velocity = mat.velocity;
+  const Vec3 start = drive.is_force ? force_at(network, drive, at_start) : start_of(network, drive);
   require(start.allFinite(), name + ": value at the start", "finite");
   for (int axis = network.dimension; axis < 3; ++axis) {
     require(start[axis] == 0.0, name + ": value at the start",

@@ -23,7 +23,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
 std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
     const NetworkDescription& network) {
   if (network.has_medium()) return IntegratorRefusal{"viscosity", {}};
-  if (!network.drives.empty()) return IntegratorRefusal{"what follows a function of time", {}};
+  if (!network.drives.empty()) return IntegratorRefusal{"what is driven", {}};
   for (const Mat& mat : network.mats) {
     if (mat.kind == MatKind::kPort) return IntegratorRefusal{"a port with the role mass", {}};
   }
@@ -88,6 +88,10 @@ std::optional<IntegratorRefusal> refusal_of_what_has_no_modes(const NetworkDescr
     decay = own_decay;
   }
   if (mass == 0.0) return IntegratorRefusal{"no mass", {}};
+  for (const Drive& drive : network.drives) {
+    if (asks_for_motion(network.time_functions[drive.function]))
+      return IntegratorRefusal{"a driven force by place or velocity", {}};
+  }
   if (network.mass_count() > kMaxModalMasses) {
     return IntegratorRefusal{"more than " + std::to_string(kMaxModalMasses) + " masses", {}};
   }

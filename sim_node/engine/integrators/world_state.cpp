@@ -87,7 +87,10 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
                                                     : nullptr),
       scheme(make_integrator(description())),
       laws_ask_for_variables(
-          std::ranges::any_of(description().state_machines, laws_ask_for_variable)) {}
+          std::ranges::any_of(description().state_machines, laws_ask_for_variable)),
+      drives_ask_for_variables(std::ranges::any_of(
+          description().time_functions,
+          [](const TimeFunction& function) { return asks_for_variable(function); })) {}
 
 StateTable WorldState::make_table(std::vector<StateMachine> from) const {
   const IntegratorKind integrator = description().integrator;
@@ -100,7 +103,7 @@ StepReport WorldState::step() noexcept {
   StepReport report;
   report.refused_inputs = port_inputs.take_refused();
   log.begin_step();
-  port_inputs.find_driven_forces(step_count);
+  find_driven_forces();
   sets.forget_partners();
   const Moved moved = scheme->step(*this);
   std::construct_at(&positions, mats.position());
@@ -115,6 +118,14 @@ StepReport WorldState::step() noexcept {
   report.wants_room = sets.want_room(mats.force_columns().position);
   report.lost_events = log.lost();
   return report;
+}
+
+void WorldState::find_driven_forces() noexcept {
+  for (std::size_t i = 0; i < port_inputs.placed_count(); ++i) {
+    const std::uint32_t mat = port_inputs.placed_mat(i);
+    port_inputs.set_motion(i, mats.position(mat), scheme->velocity(*this, mat));
+  }
+  port_inputs.find_driven_forces(step_count, table.variables().data());
 }
 
 void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {

@@ -69,6 +69,8 @@ struct WorldState {
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
 
+  /// The forces of drives at the present step. Real time: O(drives), no allocation.
+  void find_driven_forces() noexcept;
   /// Clears the forces. Of a world that freezes, ends the account of the last ones of the sets and
   /// chooses the liaisons that are computed. @return works [J]
   [[nodiscard]] StepEnergy begin_forces(const ForceColumns& columns) noexcept;
@@ -132,8 +134,9 @@ struct WorldState {
   std::unique_ptr<Freezing> freezing;  // none: every MAT is always awake
   std::unique_ptr<Integrator> scheme;
   std::uint64_t step_count = 0;
-  bool replaced = false;                // a state machine is no longer that of the network
-  bool laws_ask_for_variables = false;  // a law of the network does
+  bool replaced = false;                  // a state machine is no longer that of the network
+  bool laws_ask_for_variables = false;    // a law of the network does
+  bool drives_ask_for_variables = false;  // a drive does
 };
 
 }  // namespace cordis::engine

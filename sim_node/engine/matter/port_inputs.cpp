@@ -31,8 +31,11 @@ PortInputs::PortInputs(const NetworkDescription& description)
   }
   forces_.reserve(description.mass_count());
   function_value_.resize(description.time_functions.size(), Vec3::Zero());
+  for (const TimeFunction& function : description.time_functions)
+    is_of_time_.push_back(is_of_time(function));
   for (const Drive& drive : description.drives) {
-    (drive.is_force ? force_functions_ : moving_functions_).push_back(drive.function);
+    if (is_of_time_[drive.function])
+      (drive.is_force ? force_functions_ : moving_functions_).push_back(drive.function);
     if (!drive.is_force) {
       ports_[slot_[drive.mat]].drive = &drive;
     } else if (driven_forces_.empty() || driven_forces_.back().mat != drive.mat) {
@@ -41,12 +44,19 @@ PortInputs::PortInputs(const NetworkDescription& description)
       DrivenForce& driven = driven_forces_.back();
       driven.drives = {driven.drives.data(), driven.drives.size() + 1};
     }
+    const bool is_placed =
+        drive.is_force && asks_for_motion(description.time_functions[drive.function]);
+    const auto last = static_cast<std::uint32_t>(driven_forces_.size()) - 1;
+    if (is_placed && (placed_forces_.empty() || placed_forces_.back() != last)) {
+      driven_forces_.back().position = description.mats[drive.mat].position;
+      driven_forces_.back().velocity = description.mats[drive.mat].velocity;
+      placed_forces_.push_back(last);
+    }
   }
   for (auto* functions : {&moving_functions_, &force_functions_}) {
     std::ranges::sort(*functions);
     functions->erase(std::unique(functions->begin(), functions->end()), functions->end());
   }
-  find_driven_forces(0);
 }
 
 void PortInputs::impose_position(std::uint32_t mat, const Vec3& position) noexcept {
@@ -118,12 +128,17 @@ void PortInputs::find_values(const std::vector<std::uint32_t>& functions,
   }
 }
 
-void PortInputs::find_driven_forces(std::uint64_t step) noexcept {
+Vec3 PortInputs::force_of(const Drive& drive, const FunctionPoint& point) const noexcept {
+  return is_of_time_[drive.function] ? placed(drive, function_value_[drive.function])
+                                     : force_at(network_, drive, point);
+}
+
+void PortInputs::find_driven_forces(std::uint64_t step, const double* variables) noexcept {
   find_values(force_functions_, step);
   for (DrivenForce& driven : driven_forces_) {
-    Vec3 force = placed(driven.drives.front(), function_value_[driven.drives.front().function]);
-    for (const Drive& drive : driven.drives.subspan(1))
-      force += placed(drive, function_value_[drive.function]);
+    const FunctionPoint point{time_of(step), driven.position, driven.velocity, variables};
+    Vec3 force = force_of(driven.drives.front(), point);
+    for (const Drive& drive : driven.drives.subspan(1)) force += force_of(drive, point);
     if (!force.allFinite()) ++refused_drives_;
     driven.force = force.allFinite() ? force : Vec3(Vec3::Zero());
   }

@@ -37,8 +37,19 @@ class PortInputs {
   /// Puts the delayed positions of driven ports where the way of the first period begins: before anything
   /// is done with the MATs.
   void begin(MatArray& mats) noexcept;
+  /// The masses whose driven forces ask for their place or velocity, ascending.
+  std::size_t placed_count() const noexcept { return placed_forces_.size(); }
+  std::uint32_t placed_mat(std::size_t index) const noexcept {
+    return driven_forces_[placed_forces_[index]].mat;
+  }
+  /// Where such a mass is [m], and how fast [m/s], for find_driven_forces(). Real time: O(1).
+  void set_motion(std::size_t index, const Vec3& position, const Vec3& velocity) noexcept {
+    driven_forces_[placed_forces_[index]].position = position;
+    driven_forces_[placed_forces_[index]].velocity = velocity;
+  }
   /// The forces that drives put on masses in a step. Real time: O(drives), no allocation.
-  void find_driven_forces(std::uint64_t step) noexcept;
+  /// @param variables  values of those of the network; may be null where none is asked for
+  void find_driven_forces(std::uint64_t step, const double* variables) noexcept;
   /// Where a driven port is at a step [m]; perhaps no finite numbers. Real time: as of value_at().
   Vec3 driven_place(std::uint32_t mat, std::uint64_t step) const noexcept;
   /// Moves the driven ports to a step, after the masses. @return half of the work [J] they do over the new
@@ -83,6 +94,8 @@ class PortInputs {
   struct DrivenForce {
     std::uint32_t mat;
     std::span<const Drive> drives;   // of the network, whose forces add up
+    Vec3 position = Vec3::Zero();    // of set_motion() [m]
+    Vec3 velocity = Vec3::Zero();    // likewise [m/s]
     Vec3 force = Vec3::Zero();       // [N]
     Vec3 link_force = Vec3::Zero();  // as of HeldForce
   };
@@ -100,6 +113,7 @@ class PortInputs {
   }
   void find_values(const std::vector<std::uint32_t>& functions, std::uint64_t step) noexcept;
   const DrivenForce* driven_force_on(std::uint32_t mat) const noexcept;
+  Vec3 force_of(const Drive& drive, const FunctionPoint& point) const noexcept;
 
   const NetworkDescription& network_;
   int dimension_;
@@ -112,7 +126,9 @@ class PortInputs {
   std::vector<DrivenForce> driven_forces_;  // in MAT order
   std::uint32_t refused_ = 0;
   std::vector<std::uint32_t> moving_functions_;  // of driven ports, each once
-  std::vector<std::uint32_t> force_functions_;   // of driven_forces_, each once
+  std::vector<std::uint32_t> force_functions_;   // of driven_forces_ that are of time, each once
+  std::vector<bool> is_of_time_;                 // by function of the network
+  std::vector<std::uint32_t> placed_forces_;     // of driven_forces_ that ask for place or velocity
   std::vector<Vec3> function_value_;             // of the network's, at the step of the last call
   std::uint32_t refused_drives_ = 0;
   std::uint32_t drive_jumps_ = 0;

@@ -19,6 +19,14 @@ Vec3 column(const OdeSystem::Values& values, std::size_t first, std::uint32_t ma
   return Vec3::Map(values.data() + first + 3 * static_cast<std::size_t>(mat));
 }
 
+/// True if a force depends on the place and the velocity of its MAT, and on nothing else that changes.
+bool is_of_motion_alone(const engine::TimeFunction& function) {
+  return function.time.empty() && !asks_for_variable(function) &&
+         std::ranges::none_of(function.formula, [](const engine::Program& formula) {
+           return asks_for(formula, engine::Quantity::kAge);
+         });
+}
+
 void refuse_impulse(const engine::Program& program) {
   if (!asks_for(program, engine::Quantity::kImpulse)) return;
   throw std::invalid_argument("conditions on the impulse of a link have no reference integrator");
@@ -36,8 +44,11 @@ struct OdeSystem::Geometry {
 
 OdeSystem::OdeSystem(engine::NetworkDescription network)
     : network_(std::move(network)), held_(network_.mats.size(), Vec3::Zero()) {
-  if (!network_.drives.empty()) {
-    throw std::invalid_argument("MATs that follow a function of time have no reference integrator");
+  for (const engine::Drive& drive : network_.drives) {
+    const engine::TimeFunction& function = network_.time_functions[drive.function];
+    if (!drive.is_force || !is_of_motion_alone(function))
+      throw std::invalid_argument(
+          "MATs that follow a function of time have no reference integrator");
   }
   for (const engine::StateMachine& state_machine : network_.state_machines) {
     if (rubs(state_machine)) throw std::invalid_argument("friction has no reference integrator");
@@ -220,6 +231,10 @@ void OdeSystem::rate(const Values& values, Values& rate) {
     const Vec3 moment = engine::moment_of(bend, network_.dimension, sides(values, bend));
     add_pair_force(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
     add_pair_force(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
+  }
+  for (const engine::Drive& drive : network_.drives) {
+    Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(drive.mat)) += force_at(
+        network_, drive, {0.0, position(values, drive.mat), velocity(values, drive.mat), nullptr});
   }
   for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
     auto acceleration = Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(i));

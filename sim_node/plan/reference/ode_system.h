@@ -32,7 +32,8 @@ class OdeSystem {
     NearPairs::Pair pair;
   };
 
-  /// @throws std::invalid_argument for what is not known here: the impulse of a link, friction.
+  /// @throws std::invalid_argument for what is not known here: the impulse of a link, friction, and what
+  /// follows a function of time.
   explicit OdeSystem(engine::NetworkDescription network);
 
   Values start() const;

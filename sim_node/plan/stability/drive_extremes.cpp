@@ -59,6 +59,14 @@ double largest_value(const NetworkDescription& network, const TimeFunction& func
   return largest;
 }
 
+/// A force that depends on more than time as it is at the start, with all variables 0 [N].
+double force_at_start(const NetworkDescription& network, const engine::Drive& drive) {
+  const std::vector<double> variables(network.variables.size(), 0.0);
+  const engine::Mat& mat = network.mats[drive.mat];
+  return largest_of_finite(
+      0.0, force_at(network, drive, {0.0, mat.position, mat.velocity, variables.data()}).norm());
+}
+
 /// How much larger a force is than its function: the length of a row, which a rotation keeps.
 double factor_of(const engine::Drive& drive) noexcept {
   const std::array<double, 9>& m = drive.turn;
@@ -81,10 +89,15 @@ double largest_drive_speed(const NetworkDescription& network) {
 
 double sum_of_drive_forces(const NetworkDescription& network) {
   std::vector<double> count(network.time_functions.size(), 0.0);
-  for (const engine::Drive& drive : network.drives) {
-    if (drive.is_force) count[drive.function] += factor_of(drive);
-  }
   double sum = 0.0;
+  for (const engine::Drive& drive : network.drives) {
+    if (!drive.is_force) continue;
+    if (is_of_time(network.time_functions[drive.function])) {
+      count[drive.function] += factor_of(drive);
+    } else {
+      sum += force_at_start(network, drive);
+    }
+  }
   for (std::size_t f = 0; f < count.size(); ++f) {
     if (count[f] > 0.0) sum += count[f] * largest_value(network, network.time_functions[f]);
   }

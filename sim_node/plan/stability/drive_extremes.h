@@ -11,7 +11,8 @@ namespace cordis::plan {
 /// O(moments + entries).
 double largest_drive_speed(const engine::NetworkDescription& network);
 
-/// The sum of the largest forces [N] of all driven forces, found likewise.
+/// The sum of the largest forces [N] of all driven forces, found likewise. One that depends on more than time
+/// counts as it is at the start.
 double sum_of_drive_forces(const engine::NetworkDescription& network);
 
 }  // namespace cordis::plan

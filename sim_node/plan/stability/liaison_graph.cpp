@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "sim_node/plan/stability/force_slopes.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/set_slope.h"
@@ -352,6 +354,33 @@ class SlopesOfLinks {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kBringsEnergy =
+    "nothing bounds the energy that it brings to a law without a largest slope";
+
+/// Adds the driven forces that depend on more than time. Precondition: all else is in the graph.
+void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
+  std::vector<std::optional<ForceSlopes>> known(network.time_functions.size());
+  for (std::uint32_t d = 0; d < network.drives.size(); ++d) {
+    const engine::Drive& drive = network.drives[d];
+    if (!drive.is_force || is_of_time(network.time_functions[drive.function])) continue;
+    std::optional<ForceSlopes>& slopes = known[drive.function];
+    if (!slopes) slopes = slopes_of_force(network, network.time_functions[drive.function]);
+    const LiaisonId liaison{LiaisonKind::kForce, d};
+    if (!graph.uncertainty && !slopes->uncertainty.empty())
+      graph.uncertainty = {liaison, slopes->uncertainty};
+    if (!graph.uncertainty && !graph.bounded && slopes->brings_energy)
+      graph.uncertainty = {liaison, kBringsEnergy};
+    if (slopes->stiffness > 0.0 || slopes->viscosity > 0.0) {
+      graph.forces.push_back(
+          {drive.mat, slopes->stiffness, slopes->viscosity, slopes->variation, liaison});
+    }
+  }
+}
+
+}  // namespace
+
 LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_factor) {
   LiaisonGraph graph;
   for (const engine::Mat& mat : network.mats) {
@@ -402,6 +431,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
   for (index = 0; index < network.sets.size(); ++index)
     stored += add_set(network, index, reach, graph);
   graph.turning = turning_with_sets(network, reach, stored);
+  add_forces(network, graph);
   if (reach.endless && !graph.bounded && !graph.uncertainty) {
     graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
   }

@@ -38,6 +38,15 @@ struct Edge {
   double variation = 0.0;  ///< Slope::variation [N/m]
 };
 
+/// A driven force on a MAT that depends on its place or velocity, with the largest slopes it can have.
+struct ForceBound {
+  std::uint32_t mat = 0;
+  double stiffness = 0.0;  ///< [N/m]
+  double viscosity = 0.0;  ///< [N s/m]
+  double variation = 0.0;  ///< as Edge::variation [N/m]
+  LiaisonId liaison;
+};
+
 /// One side of a set liaison: each member touches at most so many of the others at once. The
 /// numbers are those of partner_bounds(); more may come in a run, which is held against
 /// partner_limits().
@@ -64,6 +73,7 @@ struct LiaisonGraph {
   std::vector<double> inverse_mass;  ///< per MAT [1/kg]; 0 for fixed points and port masses
   std::vector<Edge> edges;
   std::vector<ContactBound> contacts;
+  std::vector<ForceBound> forces;
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
   bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds

@@ -84,6 +84,10 @@ LiaisonGraph weighted(LiaisonGraph graph, const LimitWeights& weights) {
     contact.stiffness *= weights.stiffness;
     contact.viscosity *= weights.viscosity;
   }
+  for (ForceBound& force : graph.forces) {
+    force.stiffness *= weights.stiffness;
+    force.viscosity *= weights.viscosity;
+  }
   for (double& viscosity : graph.medium_viscosity) viscosity *= weights.link_viscosity;
   return graph;
 }

@@ -179,6 +179,9 @@ std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound) {
       add(contact.members[i], count, contact.stiffness, contact.viscosity);
     }
   }
+  for (const ForceBound& force : graph.forces) {
+    if (!least) add(force.mat, 1.0, force.stiffness, force.viscosity);
+  }
   for (std::size_t mat = 0; mat < loads.size(); ++mat)
     loads[mat].viscosity += graph.medium_viscosity[mat];
   return loads;

@@ -39,6 +39,10 @@ Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
       rows.viscosity[mat] += contact.viscosity * sum;
     }
   }
+  for (const ForceBound& force : graph.forces) {
+    rows.stiffness[force.mat] += force.stiffness * x[force.mat];
+    rows.viscosity[force.mat] += force.viscosity * x[force.mat];
+  }
   for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity[i] * x[i];
   return rows;
 }
@@ -63,6 +67,9 @@ std::optional<LiaisonId> strongest_at(const LiaisonGraph& graph, std::uint32_t m
       consider(contact.neighbours[i] * contact.stiffness, contact.neighbours[i] * contact.viscosity,
                {LiaisonKind::kSet, contact.set});
     }
+  }
+  for (const ForceBound& force : graph.forces) {
+    if (force.mat == mat) consider(force.stiffness, force.viscosity, force.liaison);
   }
   return strongest;
 }
@@ -168,6 +175,10 @@ StepBound edge_bound(const LiaisonGraph& graph) {
   // If x = 1/2, the rows of edges and contact bounds are the sums d of their slopes.
   const std::size_t count = graph.inverse_mass.size();
   Rows sums = times(graph, std::vector<double>(count, 0.5));
+  for (const ForceBound& force : graph.forces) {  // they have one end, of which that was half
+    sums.stiffness[force.mat] += 0.5 * force.stiffness;
+    sums.viscosity[force.mat] += 0.5 * force.viscosity;
+  }
   for (std::size_t i = 0; i < count; ++i) {
     sums.viscosity[i] =
         (sums.viscosity[i] + 0.5 * graph.medium_viscosity[i]) * graph.inverse_mass[i];

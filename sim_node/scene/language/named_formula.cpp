@@ -37,7 +37,11 @@ std::string list_of(std::span<const FormulaName> names) {
 
 /// Puts the names of a formula to what they stand for. @return whether all are known
 bool put_names(Expression& formula, const std::string& what, std::span<const FormulaName> names,
-               const ParameterValues& parameters, Problems& problems) {
+               const ParameterValues& parameters, const AskedOutside* outside, Problems& problems) {
+  // A signal that is called as a quantity of links would be taken for what stands for another name.
+  const auto is_signal = [outside](const std::string& word) {
+    return outside != nullptr && outside->signals.contains(word) && find_quantity(word) == nullptr;
+  };
   bool known = true;
   for (ExpressionWord& word : formula.words) {
     if (word.kind == ExpressionWord::Kind::kOperation) {
@@ -52,14 +56,18 @@ bool put_names(Expression& formula, const std::string& what, std::span<const For
       } else if (word.name == "pi") {
         word.kind = ExpressionWord::Kind::kNumber;
         word.number = kPi;
-      } else {
+      } else if (!is_signal(word.name)) {
         std::vector<std::string> words = parameters.names();
         for (const FormulaName& other : names) words.emplace_back(other.word);
         words.emplace_back("pi");
+        if (outside != nullptr)
+          words.insert(words.end(), outside->signals.begin(), outside->signals.end());
         const std::string hint = config::did_you_mean(word.name, words);
-        problems.error(
-            formula.place_of(word), what + " cannot ask for '" + word.name + "'",
-            hint.empty() ? "it may ask for " + list_of(names) + "pi and its parameters" : hint);
+        problems.error(formula.place_of(word), what + " cannot ask for '" + word.name + "'",
+                       hint.empty() ? "it may ask for " + list_of(names) + "pi" +
+                                          (outside == nullptr ? " and its parameters"
+                                                              : ", its parameters and signals")
+                                    : hint);
         known = false;
       }
     }
@@ -67,9 +75,16 @@ bool put_names(Expression& formula, const std::string& what, std::span<const For
   return known;
 }
 
+std::string axes_text(int space) {
+  return space == 1 ? "one formula" : std::to_string(space) + " formulas, one for each axis";
+}
+
+}  // namespace
+
 engine::Program read_named_formula(const Value& text, const std::string& what,
                                    std::span<const FormulaName> names,
-                                   const ParameterValues& parameters, Problems& problems) {
+                                   const ParameterValues& parameters, Problems& problems,
+                                   AskedOutside* outside) {
   std::optional<Expression> formula = parse_expression(text, what, problems);
   if (!formula) return {};
   if (formula->is_truth) {
@@ -77,17 +92,12 @@ engine::Program read_named_formula(const Value& text, const std::string& what,
                    "write if(..., 1, 0)");
     return {};
   }
-  if (!put_names(*formula, what, names, parameters, problems)) return {};
+  if (!put_names(*formula, what, names, parameters, outside, problems)) return {};
   std::uint32_t slots = 0;
-  std::optional<CompiledExpression> compiled = compile(*formula, what, parameters, slots, problems);
+  std::optional<CompiledExpression> compiled =
+      compile(*formula, what, parameters, slots, problems, outside);
   return compiled ? std::move(compiled->program) : engine::Program{};
 }
-
-std::string axes_text(int space) {
-  return space == 1 ? "one formula" : std::to_string(space) + " formulas, one for each axis";
-}
-
-}  // namespace
 
 bool has_formula(const Value& value) {
   const auto is_formula = [](const Value& item) {
@@ -102,7 +112,7 @@ bool has_formula(const Value& value) {
 AxisFormulas read_axis_formulas(const Value& value, const std::string& what, int space,
                                 std::span<const FormulaName> names,
                                 const ParameterValues& parameters, const std::string& or_else,
-                                Problems& problems) {
+                                Problems& problems, AskedOutside* outside) {
   AxisFormulas formulas;
   const bool is_list = value.kind() == Value::Kind::kSequence;
   const std::vector<Value> texts = is_list ? value.items() : std::vector<Value>{value};
@@ -112,7 +122,7 @@ AxisFormulas read_axis_formulas(const Value& value, const std::string& what, int
     return formulas;
   }
   for (std::size_t axis = 0; axis < texts.size(); ++axis) {
-    formulas[axis] = read_named_formula(texts[axis], what, names, parameters, problems);
+    formulas[axis] = read_named_formula(texts[axis], what, names, parameters, problems, outside);
   }
   return formulas;
 }

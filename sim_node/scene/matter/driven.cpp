@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,20 @@ struct DriveKey {
 constexpr std::array<DriveKey, 3> kDriveKeys{{{"position_m", DriveSpec::Kind::kPosition},
                                               {"displacement_m", DriveSpec::Kind::kDisplacement},
                                               {"force_n", DriveSpec::Kind::kForce}}};
+
+constexpr std::array<const char*, 3> kPlaceWords{"x_m", "y_m", "z_m"};
+constexpr std::array<const char*, 3> kVelocityWords{"velocity_x_m_per_s", "velocity_y_m_per_s",
+                                                    "velocity_z_m_per_s"};
+
+/// What the formulas of a force may ask for by these names.
+std::vector<FormulaName> names_of_force(int space) {
+  std::vector<FormulaName> names(kNamesOfTime.begin(), kNamesOfTime.end());
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(space); ++axis)
+    names.push_back({kPlaceWords[axis], engine::kPlaceInForce[axis]});
+  for (std::size_t axis = 0; axis < static_cast<std::size_t>(space); ++axis)
+    names.push_back({kVelocityWords[axis], engine::kVelocityInForce[axis]});
+  return names;
+}
 
 void read_table(const Value& value, const std::string& what, int space, TimeFunction& function,
                 Problems& problems) {
@@ -63,6 +78,7 @@ std::string point_text(const Vec3& point, int space) {
 
 /// The value at 0 s must be one to begin with.
 void check_start_value(MappingReader& reader, const char* key, int space, DriveSpec& spec) {
+  if (!is_of_time(spec.function)) return;
   spec.start = value_at(spec.function, 0.0);
   const std::string what = reader.name_of(key);
   if (!spec.start.allFinite()) {
@@ -98,9 +114,12 @@ void drive_position(const DriveSpec& spec, MappingReader& reader, GeneratedMatte
   }
 }
 
-void drive_force(MappingReader& reader, GeneratedMatter& matter) {
+void drive_force(const DriveSpec& spec, MappingReader& reader, GeneratedMatter& matter) {
   for (std::uint32_t i = 0; i < matter.mats.size(); ++i) {
-    if (matter.mats[i].kind == MatKind::kMass) matter.drives.push_back({i, 0, true});
+    const engine::Mat& mat = matter.mats[i];
+    if (mat.kind != MatKind::kMass) continue;
+    matter.drives.push_back({i, 0, true});
+    if (reader.ok()) check_force_there(spec.function, {0.0, mat.position, mat.velocity}, reader);
   }
   if (matter.drives.empty()) {
     reader.error_at("driven", "'force_n' drives masses, " + reader.what() + " has none");
@@ -109,14 +128,27 @@ void drive_force(MappingReader& reader, GeneratedMatter& matter) {
 
 }  // namespace
 
-std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems& problems) {
+void check_force_there(const TimeFunction& function, const engine::FunctionPoint& start,
+                       MappingReader& reader) {
+  if (asks_for_variable(function) || value_at(function, start).allFinite()) return;
+  reader.error_at("driven", "'force_n' of " + reader.what() +
+                                " is no finite number at 0 s, where a mass of it begins");
+}
+
+std::optional<DriveSpec> read_driven(MappingReader& reader, int space,
+                                     const std::set<std::string>& signals, Problems& problems) {
   const Value section = reader.optional_mapping("driven");
   if (!section.exists()) return std::nullopt;
   const std::size_t errors_before = problems.error_count();
   MappingReader driven(section, "'driven' of " + reader.what(), problems);
-  const ParameterValues parameters =
-      read_formula_parameters(driven, kNamesOfTime, "formulas of time", problems);
+  const std::vector<FormulaName> all_names = names_of_force(space);
+  const bool pushes = driven.has("force_n");
+  const std::span<const FormulaName> names =
+      std::span(all_names).first(pushes ? all_names.size() : 1);
+  const ParameterValues parameters = read_formula_parameters(
+      driven, names, pushes ? "formulas of forces" : "formulas of time", problems);
   DriveSpec spec;
+  AskedOutside outside{signals, spec.references};
   const char* written = nullptr;
   for (const DriveKey& known : kDriveKeys) {
     const Value value = driven.optional_value(known.key);
@@ -132,8 +164,10 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space, Problems&
     if (value.kind() == Value::Kind::kMapping) {
       read_table(value, what, space, spec.function, problems);
     } else {
-      spec.function.formula = read_axis_formulas(value, what, space, kNamesOfTime, parameters,
-                                                 ", or a table", problems);
+      const bool is_force = known.kind == DriveSpec::Kind::kForce;
+      spec.function.formula =
+          read_axis_formulas(value, what, space, is_force ? names : names.first(1), parameters,
+                             ", or a table", problems, is_force ? &outside : nullptr);
     }
   }
   driven.finish();
@@ -152,11 +186,13 @@ void drive(const DriveSpec& spec, MappingReader& reader, GeneratedMatter& matter
     return;
   }
   if (spec.kind == DriveSpec::Kind::kForce) {
-    drive_force(reader, matter);
+    drive_force(spec, reader, matter);
   } else {
     drive_position(spec, reader, matter);
   }
-  if (!matter.drives.empty()) matter.time_functions.push_back(spec.function);
+  if (matter.drives.empty()) return;
+  matter.time_functions.push_back(spec.function);
+  matter.references = spec.references;
 }
 
 }  // namespace cordis::scene

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim_node/scene/language/formula.h"
 #include "sim_node/scene/scene.h"
 
 namespace cordis::scene {
@@ -21,7 +22,8 @@ struct GeneratedMatter {
   std::vector<NamedRange> names;                  ///< names of MATs within it, from 0
   std::vector<engine::Surface> surfaces;          ///< their MATs counted from 0
   std::vector<engine::TimeFunction> time_functions;
-  std::vector<engine::Drive> drives;  ///< their MATs and functions counted from 0
+  std::vector<engine::Drive> drives;          ///< their MATs and functions counted from 0
+  std::vector<VariableReference> references;  ///< what the one function asks for by name
 };
 
 }  // namespace cordis::scene

@@ -133,7 +133,7 @@ GeneratedMatter generate_matter(config::MappingReader& reader, const Liaisons& l
   if (!check_space(reader, kind, space)) return {};
 
   Source source{reader, liaisons, space, may_be_massless, problems};
-  const std::optional<DriveSpec> spec = read_driven(reader, space, problems);
+  const std::optional<DriveSpec> spec = read_driven(reader, space, liaisons.signals(), problems);
   const engine::Vec3 led_from = spec ? spec->start : engine::Vec3(engine::Vec3::Zero());
   if (reader.has("driven") && reader.optional_value("driven").find("position_m").exists()) {
     source.driven_start = &led_from;

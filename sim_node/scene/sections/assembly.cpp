@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "node/assert.h"
 #include "sim_node/scene/matter/matter.h"
 #include "sim_node/scene/matter/surfaces.h"
 
@@ -15,9 +16,7 @@ void set_turn(const Eigen::Matrix3d& turn, engine::Drive& drive) {
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(drive.turn.data()) = turn;
 }
 
-void Assembly::read_liaisons(const Value& section, const Value& signals) {
-  std::set<std::string> names_of_signals;
-  for (const Value::Entry& entry : signals.entries()) names_of_signals.insert(entry.key);
+void Assembly::read_liaisons(const Value& section, std::set<std::string> names_of_signals) {
   std::vector<LiaisonSection> sections{{section, scene.file}};
   sections.insert(sections.end(), parts.liaisons().begin(), parts.liaisons().end());
   liaisons->read(sections, scene.space(), std::move(names_of_signals), problems);
@@ -75,10 +74,13 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
 }
 
 void Assembly::add_drives(const GeneratedMatter& matter, std::uint32_t first_mat) {
+  CORDIS_ASSERT(matter.references.empty() || matter.time_functions.size() == 1);
   engine::NetworkDescription& network = scene.network;
   const auto first_function = static_cast<std::uint32_t>(network.time_functions.size());
   network.time_functions.insert(network.time_functions.end(), matter.time_functions.begin(),
                                 matter.time_functions.end());
+  if (!matter.references.empty())
+    function_references.push_back({first_function, matter.references, names.full("")});
   for (engine::Drive drive : matter.drives) {
     drive.mat += first_mat;
     drive.function += first_function;

@@ -49,6 +49,13 @@ struct MatterLine {
   std::vector<std::uint32_t> mats;
 };
 
+/// What a time function of the network asks for by name.
+struct FunctionReferences {
+  std::uint32_t function = 0;  ///< index in NetworkDescription::time_functions
+  std::vector<VariableReference> references;
+  std::string scope;  ///< w.rim. of the part it stands in, or empty
+};
+
 /// What the sections of a scene file add to, in the order parts, liaisons, matter, ports, links,
 /// signals.
 struct Assembly {
@@ -59,8 +66,8 @@ struct Assembly {
         parts(all_problems) {}
 
   /// Reads the liaisons of the scene and of files of parts.
-  /// @param signals  the section of that name: conditions may ask for them
-  void read_liaisons(const config::Value& section, const config::Value& signals);
+  /// @param names_of_signals  conditions may ask for them
+  void read_liaisons(const config::Value& section, std::set<std::string> names_of_signals);
   /// Numbers the links of all kinds in one row; the last call.
   void finish();
 
@@ -113,6 +120,7 @@ struct Assembly {
   std::optional<config::Colour> colour;  ///< for what has none itself in the part that is being
                                          ///< added
   std::set<const Part*> faulty_parts;    ///< whose faults have been reported
+  std::vector<FunctionReferences> function_references;
   std::size_t part_uses = 0;
   std::size_t set_members = 0;
   std::size_t set_surfaces = 0;

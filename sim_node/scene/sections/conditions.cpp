@@ -83,16 +83,31 @@ class ConditionReader {
       : assembly_(assembly), signals_(signals) {}
 
   void read(std::uint32_t state_machine, const std::string& scope) {
-    scope_ = scope;
-    StateMachinePool::Bindings bindings;
-    for (const VariableReference& reference : pool().references(state_machine)) {
-      reference_ = &reference;
-      bindings.push_back(reference.owner.empty() ? of_scene() : of_something());
+    pool().bind(state_machine, bindings_of(pool().references(state_machine), scope));
+  }
+
+  void read(const FunctionReferences& asked) {
+    const StateMachinePool::Bindings bindings = bindings_of(asked.references, asked.scope);
+    engine::TimeFunction& function = assembly_.scene.network.time_functions[asked.function];
+    for (engine::Program& formula : function.formula) {
+      for (Instruction& instruction : formula.code) {
+        if (instruction.operation == Operation::kVariable) instruction = bindings[instruction.slot];
+      }
     }
-    pool().bind(state_machine, std::move(bindings));
   }
 
  private:
+  StateMachinePool::Bindings bindings_of(const std::vector<VariableReference>& references,
+                                         const std::string& scope) {
+    scope_ = scope;
+    StateMachinePool::Bindings bindings;
+    for (const VariableReference& reference : references) {
+      reference_ = &reference;
+      bindings.push_back(reference.owner.empty() ? of_scene() : of_something());
+    }
+    return bindings;
+  }
+
   StateMachinePool& pool() const { return assembly_.liaisons->pool(); }
 
   /// One problem for each place, however many links a liaison has.
@@ -290,6 +305,7 @@ void read_conditions(Assembly& assembly, const std::vector<Signal>& signals) {
     scopes[index] = origin.scope;
   }
   for (std::uint32_t index = 0; index < scopes.size(); ++index) reader.read(index, scopes[index]);
+  for (const FunctionReferences& asked : assembly.function_references) reader.read(asked);
 }
 
 }  // namespace cordis::scene

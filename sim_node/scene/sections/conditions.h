@@ -5,8 +5,8 @@
 
 namespace cordis::scene {
 
-/// Puts variables of the network in the place of the names in conditions, once all matter, links and
-/// signals are known. A name in a link of a part is first one of the part, then one of the scene.
+/// Puts variables of the network in the place of the names in conditions and driven forces, once all
+/// matter, links and signals are known. A name in a part is first one of the part, then one of the scene.
 /// Whatever is wrong is a problem of its place, once for all links of a liaison.
 void read_conditions(Assembly& assembly, const std::vector<Signal>& signals);
 

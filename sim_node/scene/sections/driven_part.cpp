@@ -49,12 +49,22 @@ void drive_part(Assembly& assembly, const DriveSpec& spec, std::uint32_t first,
   }
   const auto function = static_cast<std::uint32_t>(network.time_functions.size());
   network.time_functions.push_back(spec.function);
+  if (!spec.references.empty())
+    assembly.function_references.push_back({function, spec.references, assembly.names.full("")});
+  const bool is_placed = asks_for_motion(spec.function);
   const bool is_force = spec.kind == DriveSpec::Kind::kForce;
   for (std::uint32_t i = first; i < network.mats.size(); ++i) {
     engine::Mat& mat = network.mats[i];
     if (is_force && mat.kind != MatKind::kMass) continue;
     engine::Drive drive{i, function, is_force};
     set_turn(assembly.placement.turn, drive);
+    if (is_placed) drive.origin = assembly.placement(engine::Vec3::Zero());
+    if (is_placed && !asks_for_variable(spec.function) &&
+        !force_at(network, drive, {0.0, mat.position, mat.velocity, nullptr}).allFinite()) {
+      assembly.problems.error(
+          place, "'force_n' of " + what + " is no finite number at 0 s, where a mass of it begins");
+      return;
+    }
     if (!is_force) {
       drive.origin = mat.position;
       mat = {MatKind::kPort, 0.0, start_of(network, drive), engine::Vec3::Zero()};

@@ -59,7 +59,8 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
   use.colour = reader.optional_colour("color");
   use.is_fixed = reader.optional_truth("fixed", false);
   use.fixed_place = reader.place_of("fixed");
-  use.drive = read_driven(reader, assembly.scene.space(), assembly.problems);
+  use.drive =
+      read_driven(reader, assembly.scene.space(), assembly.liaisons->signals(), assembly.problems);
   if (reader.has("driven")) use.drive_place = reader.optional_value("driven").place();
   use.motion = read_motion(reader, assembly.scene.space());
   use.motion_place =

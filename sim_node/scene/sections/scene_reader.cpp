@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "node/config/file_kind.h"
 #include "node/config/yaml_reader.h"
@@ -121,13 +124,15 @@ void read_content(config::MappingReader& reader, Scene& scene, config::Problems&
   if (scene.space() == 0) return;  // nothing sure can be said about lengths
 
   Assembly assembly(scene, problems);
-  const WorldFields fields = read_world(world, scene, problems);
+  std::set<std::string> names_of_signals;
+  for (const Value::Entry& entry : signals.entries()) names_of_signals.insert(entry.key);
+  const WorldFields fields = read_world(world, names_of_signals, scene, problems);
   assembly.parts.read_section(parts, scene.file);
-  assembly.read_liaisons(liaisons, signals);
+  assembly.read_liaisons(liaisons, std::move(names_of_signals));
   read_matter(assembly, matter);
   read_ports(assembly, ports);
   check_ports(assembly);
-  add_fields(fields, scene, problems);
+  add_fields(fields, assembly);
   read_links(assembly, links);
   std::vector<Signal> read = read_signals(assembly, signals);
   read_conditions(assembly, read);
