@@ -189,6 +189,28 @@ TEST(DrivenForce, AsksForVariablesAsTheyAreNow) {
   EXPECT_LT(std::abs(world.energy().residual()), 1e-12 * world.energy().largest);
 }
 
+TEST(DrivenForce, AsksForAVelocityAsForThatOfItsMass) {
+  for (const auto integrator : {IntegratorKind::kCordis, IntegratorKind::kLeapfrog}) {
+    SCOPED_TRACE(to_string(integrator));
+    const Mat flying = mass(0.4, Vec3(10, 2, 0), Vec3(3, -1, 0));
+    NetworkDescription own = one_mass(flying, well(0.0, 0.3, 2), 1e-3, integrator);
+    own.time_functions[0].formula[1] = {};
+    NetworkDescription asked = own;
+    asked.time_functions[0].formula[0] = (Term(0.0) - Term(0.3) * variable(0)).program;
+    engine::Variable of_mass;
+    of_mass.quantity = engine::VariableKind::kVelocity;
+    of_mass.direction = Vec3::UnitX();
+    asked.variables = {of_mass};
+    World first = make_world(own);
+    World second = make_world(asked);
+    for (int n = 0; n < 500; ++n) {
+      first.step();
+      second.step();
+      ASSERT_NEAR(first.position(0).x(), second.position(0).x(), 1e-12) << n;  // rounding
+    }
+  }
+}
+
 TEST(DrivenForce, IsThatOfItsFrame) {
   // Turned by a quarter and moved, the well of a frame along its x axis pulls along y about its origin.
   TimeFunction along;

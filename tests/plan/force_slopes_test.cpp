@@ -124,6 +124,10 @@ TEST(ForceSlopes, OfWhatIsBoundedAreCertain) {
   EXPECT_EQ(pumped.uncertainty, "");
   EXPECT_DOUBLE_EQ(pumped.stiffness, 3.0);
   EXPECT_EQ(slopes(Term(-9.0) * asked(1), Term(0.0)).uncertainty, "");
+  NetworkDescription led = under(Term(-9.0) * asked(0), Term(0.0));
+  led.mats.push_back(port(Vec3(1, 0, 0)));
+  led.variables[0].index = 1;  // what is led from outside
+  EXPECT_EQ(plan::slopes_of_force(led, led.time_functions[0]).uncertainty, "");
 }
 
 TEST(ForceSlopes, LimitTheStepAsASpringToTheGround) {

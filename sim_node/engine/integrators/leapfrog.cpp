@@ -15,7 +15,11 @@ Leapfrog::Leapfrog(const NetworkDescription& network)
       damping_(damps_implicitly(network) ? std::make_unique<ImplicitDamping>(network) : nullptr),
       stiff_friction_(network),
       layout_(layout_of(network)),
-      velocity_(4 * network.mats.size(), 0.0) {}
+      velocity_(4 * network.mats.size(), 0.0) {
+  // What asks for velocities before start() has those of the network.
+  for (std::size_t i = 0; i < network.mats.size(); ++i)
+    set_extrapolated(i, network.mats[i].position - network.step * network.mats[i].velocity);
+}
 
 void Leapfrog::start(WorldState& world) noexcept {
   MatArray& mats = world.mats;

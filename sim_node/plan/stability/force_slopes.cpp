@@ -39,10 +39,22 @@ Quantity quantity_of(std::size_t coordinate) {
                             : engine::kVelocityInForce[coordinate - kAxes];
 }
 
-/// True for a variable that stays what it is while nothing changes its state.
-bool is_stepwise(VariableKind kind) {
-  return kind == VariableKind::kState || kind == VariableKind::kChanges ||
-         kind == VariableKind::kAwake || kind == VariableKind::kTime || kind == VariableKind::kAge;
+/// True for a variable that no motion of a mass moves: of time, of states, of where a port or a fixed point is.
+bool is_given(const engine::NetworkDescription& network, const engine::Variable& variable) {
+  switch (variable.quantity) {
+    case VariableKind::kState:
+    case VariableKind::kChanges:
+    case VariableKind::kAwake:
+    case VariableKind::kTime:
+    case VariableKind::kAge:
+      return true;
+    case VariableKind::kPosition:
+    case VariableKind::kVelocity:
+    case VariableKind::kSpeed:
+      return is_of_one_mat(variable) && network.mats[variable.index].kind != engine::MatKind::kMass;
+    default:
+      return false;
+  }
 }
 
 std::string word_of(const engine::Variable& variable) {
@@ -424,8 +436,8 @@ ForceSlopes slopes_of_force(const engine::NetworkDescription& network,
   found.viscosity = opposing(over_velocity);
   found.variation = variation_of_slopes(over_place);
   const std::vector<std::string> moving =
-      field.unbounded_inputs([](const engine::Variable& variable, const Interval& range) {
-        return !is_stepwise(variable.quantity) && range.low != range.high;
+      field.unbounded_inputs([&](const engine::Variable& variable, const Interval& range) {
+        return !is_given(network, variable) && range.low != range.high;
       });
   if (!only_opposes(over_velocity)) {
     found.uncertainty = "it may drive what moves, and nothing bounds the energy of that";
