@@ -112,7 +112,12 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
   const engine::ModalBlock block(network);
   ModalLoad load;
   double most = 0.0;
-  if (!graph.contacts.empty()) load.together = std::numeric_limits<double>::infinity();
+  if (!graph.contacts.empty()) {
+    const ContactBound& contact = graph.contacts.front();
+    load.together = most = std::numeric_limits<double>::infinity();
+    load.worst.liaison = {LiaisonKind::kSet, contact.set};
+    load.worst.mat = contact.members.front();
+  }
   for (const Edge& edge : graph.edges) {
     const bool to_port = network.mats[edge.mat_a].kind == engine::MatKind::kPort ||
                          network.mats[edge.mat_b].kind == engine::MatKind::kPort;
@@ -134,7 +139,8 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
 }
 
 /// Certain at the step of the network alone; for others as if the block bore 1 / dt^2.
-Stability stability_of_modes(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+Stability stability_of_modes(const engine::NetworkDescription& network, LiaisonGraph graph) {
+  graph.set_step(network, network.step);
   const ModalLoad load = modal_load(network, graph);
   Stability stability;
   stability.certified = load.worst;
@@ -215,6 +221,10 @@ double Plan::margin() const noexcept {
 std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& network,
                                           const LiaisonGraph& graph) {
   if (graph.uncertainty) return graph.uncertainty;
+  if (network.integrator == engine::IntegratorKind::kModal && !graph.contacts.empty()) {
+    return Uncertainty{LiaisonId{LiaisonKind::kSet, graph.contacts.front().set},
+                       "no limit is known for a set beside modes"};
+  }
   if (const auto solved = friction_beside_dampers(network)) {
     return Uncertainty{
         LiaisonId{LiaisonKind::kStateLink, *solved},

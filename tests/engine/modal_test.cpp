@@ -127,6 +127,21 @@ TEST(Modal, IsOfSecondOrderInWhatIsFastenedToIt) {
   EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.1);
 }
 
+/// docs/integrators.md: the account multiplies neighbouring positions.
+TEST(Modal, CountsTheEnergyOfAFastModeTooLow) {
+  constexpr double kMass = 0.01;
+  constexpr double kStep = 1e-3;
+  for (const double turn : {0.1, 1.0, 2.12, 3.0}) {  // of the mode in a step [rad]
+    const double stiffness = kMass * turn * turn / (kStep * kStep);
+    World world = make_world(by_modes(oscillator(kMass, stiffness, 0.0, 0.0, 1.0, kStep)));
+    const double half = std::cos(0.5 * turn);
+    for (int n = 0; n < 50; ++n) {
+      world.step();
+      ASSERT_NEAR(world.energy().total(), 0.5 * kMass * half * half, 1e-12) << turn;
+    }
+  }
+}
+
 TEST(Modal, KeepsItsAccountToRounding) {
   World world = make_world(by_modes(driven_string(2e-4)));
   world.set_external_force(12, Vec3(0.5, 0, 0));

@@ -87,6 +87,46 @@ TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
   EXPECT_GT(largest_excursion(scene, 20000), 1e6);
 }
 
+/// However stiff an element is, it adds no more than 2 Z / dt.
+TEST(IntegratorLimit, OfAMaxwellElementBesideModesCountsItsViscosity) {
+  for (const double ratio : {0.1, 1.0, 10.0, 300.0}) {  // K dt / Z
+    NetworkDescription scene = string_in_space(20, 0.01, 4e-4);
+    scene.dimension = 1;
+    scene.integrator = IntegratorKind::kModal;
+    for (Mat& mat : scene.mats) mat.position = Vec3(mat.position.y(), 0, 0);
+    scene.maxwell_links = {{0, 7, ratio, scene.step, 0.0}};
+    const plan::Stability small = plan::stability_of(scene, plan::liaison_graph(scene));
+    const double load = std::pow(scene.step / small.diverging_step, 2.0);
+    const auto scale_to = [&](double share) {
+      scene.maxwell_links[0].stiffness = share * ratio / load;
+      scene.maxwell_links[0].viscosity = share * scene.step / load;
+      return plan::stability_of(scene, plan::liaison_graph(scene));
+    };
+    EXPECT_TRUE(scale_to(0.98).holds()) << ratio;
+    EXPECT_LT(largest_excursion(scene, 20000), 1e3) << ratio;
+    EXPECT_TRUE(scale_to(1.02).diverges()) << ratio;
+    EXPECT_GT(largest_excursion(scene, 20000), 1e6) << ratio;
+  }
+}
+
+TEST(IntegratorLimit, OfASetBesideModesIsNotKnownAndNamesTheSet) {
+  NetworkDescription scene = oscillator(0.05, 500.0, 0.0, 0.0, 1.0, 1e-4);
+  scene.integrator = IntegratorKind::kModal;
+  scene.state_machines.push_back(state_machine(1.0));
+  scene.state_links = {{0, 1, 0, 0.0}};
+  engine::SetLiaison set;
+  set.set_p = {0};
+  set.set_q = {1};
+  set.range = set.rest_length = 0.001;
+  scene.sets.push_back(set);
+  const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+  ASSERT_TRUE(stability.uncertainty.has_value());
+  EXPECT_EQ(stability.uncertainty->liaison.kind, plan::LiaisonKind::kSet);
+  ASSERT_TRUE(stability.certified.liaison.has_value());
+  EXPECT_EQ(stability.certified.liaison->kind, plan::LiaisonKind::kSet);
+  EXPECT_FALSE(stability.diverges());
+}
+
 TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1e-6);
   scene.integrator = IntegratorKind::kLeapfrog;
