@@ -29,9 +29,28 @@ engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
   return energy;
 }
 
+/// What is made joins the energy that is there, and viscosity takes its share of both.
+void EnergyWatch::mix(const engine::Energy& energy, std::uint64_t step) noexcept {
+  const double error = energy.integration_error();
+  if (!std::isfinite(error)) {
+    made_ = error;
+    return;
+  }
+  if (step < step_) made_ = error_ = dissipated_ = 0.0;  // the scene has begun again
+  const double there = energy_of_moment(energy);
+  const double taken = std::max(energy.dissipated - dissipated_, 0.0);
+  made_ += error - error_;
+  if (taken > 0.0) made_ *= there / (there + taken);
+  step_ = step;
+  error_ = error;
+  dissipated_ = energy.dissipated;
+}
+
 engine::Energy EnergyWatch::update(const engine::World& world) noexcept {
-  const engine::Energy energy = read(world);
+  engine::Energy energy = read(world);
   if (std::isfinite(energy.largest)) largest_ = energy.largest;
+  mix(energy, world.step_count());
+  energy.made_there = made_;
   return energy;
 }
 

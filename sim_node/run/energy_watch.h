@@ -1,6 +1,8 @@
 // sim_node/run/energy_watch.h -- the largest energy that a scene has had.
 #pragma once
 
+#include <cstdint>
+
 #include "sim_node/engine/world.h"
 
 namespace cordis::sim {
@@ -11,14 +13,20 @@ class EnergyWatch {
  public:
   /// Takes what a KineticWatch of the same world has seen [J].
   void add(double largest_kinetic) noexcept;
-  /// The energy of the world now; Energy::largest is that over all moments so far. Real time:
-  /// O(MATs + links + pairs), no allocation.
+  /// The energy of the world now; Energy::largest is that over all moments so far, and Energy::made_there what
+  /// the steps have made of the energy that is there. Real time: O(MATs + links + pairs), no allocation.
   engine::Energy update(const engine::World& world) noexcept;
   /// As update(), and keeps nothing.
   engine::Energy read(const engine::World& world) const noexcept;
 
  private:
-  double largest_ = 0.0;  // [J]
+  void mix(const engine::Energy& energy, std::uint64_t step) noexcept;
+
+  double largest_ = 0.0;     // [J]
+  double made_ = 0.0;        // [J]
+  double error_ = 0.0;       // at the last update() [J]
+  double dissipated_ = 0.0;  // likewise [J]
+  std::uint64_t step_ = 0;   // likewise
 };
 
 }  // namespace cordis::sim

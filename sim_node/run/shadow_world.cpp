@@ -32,7 +32,7 @@ bool is_error_large(const engine::Energy& energy) noexcept {
 }
 
 bool makes_energy(const engine::Energy& energy) noexcept {
-  return is_above(0.1, energy.integration_error(), energy);
+  return is_above(0.1, energy.made_there, energy);
 }
 
 WorldFigures figures_of(const engine::World& world, EnergyWatch& watch,

@@ -153,6 +153,32 @@ TEST(Certificate, JudgesTheViscosityOfAContactAtTheSpeedOfAFall) {
   EXPECT_LT(stability.certified.step, 1.7e-5);
 }
 
+/// Lennard-Jones has no force at distance 0, and a force without a limit beside it.
+TEST(Certificate, IsNotGivenToBallsThatStartAtOnePoint) {
+  for (const int dimension : {1, 2, 3}) {
+    for (const bool of_sets : {false, true}) {
+      for (const double apart : {0.0, 0.0146}) {
+        NetworkDescription scene = mass_at(Vec3(apart, 0, 0), dimension, 4000.0);
+        scene.mats[1].mass = 0.0124;
+        scene.mats[1].velocity = Vec3(0.01, 0, 0);
+        scene.state_machines = {state_machine(0.0, engine::LennardJones{0.0082, 0.0146, 0.0437})};
+        if (of_sets) {
+          engine::SetLiaison set;
+          set.set_p = {0};
+          set.set_q = {1};
+          set.range = 0.0437;
+          set.rest_length = 0.0146;
+          scene.sets = {set};
+        } else {
+          scene.state_links = {{0, 1, 0, 0.0146}};
+        }
+        EXPECT_EQ(stability_at_start(scene).uncertainty.has_value(), apart == 0.0)
+            << dimension << "-D, sets: " << of_sets << ", " << apart << " m";
+      }
+    }
+  }
+}
+
 TEST(Certificate, IsNotSureThatModesDivergeBySpeedsOfALaterTime) {
   NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 2700.0);
   scene.integrator = engine::IntegratorKind::kModal;

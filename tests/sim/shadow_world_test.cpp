@@ -1,6 +1,8 @@
 // tests/sim/shadow_world_test.cpp
 #include "sim_node/run/shadow_world.h"
 
+#include <cmath>
+#include <memory>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -64,6 +66,68 @@ void expect_to_see_what_the_world_is(const std::string& text) {
     expect_same(*figures, own);
     EXPECT_FALSE(shadow.read(0ms));
   }
+}
+
+/// A mass that a port leads by a spring and a damper.
+engine::NetworkDescription led_by_a_damper() {
+  engine::NetworkDescription scene;
+  scene.dimension = 1;
+  scene.step = 1e-3;
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  engine::Mat hand;
+  hand.kind = engine::MatKind::kPort;
+  engine::Mat mass;
+  mass.mass = 0.1;
+  scene.mats = {hand, mass};
+  scene.links = {{0, 1, 1000.0, 3.0, 0.0}};
+  return scene;
+}
+
+/// The steps make a little at each turn of the hand, which the damper takes: it adds up to more than all the energy that
+/// ever was there.
+TEST(EnergyWatch, ForgetsWhatTheStepsHaveMadeAndViscosityHasTaken) {
+  engine::World world(std::make_shared<const engine::Network>(led_by_a_damper()));
+  EnergyWatch watch;
+  engine::Energy energy;
+  for (int n = 0; n < 60'000; ++n) {
+    const int phase = n % 200;
+    world.impose_position(0, engine::Vec3(2e-4 * (phase < 100 ? phase : 200 - phase), 0, 0));
+    world.step();
+    if (n % 40 != 39) continue;
+    energy = watch.update(world);
+    EXPECT_FALSE(makes_energy(energy)) << n;
+  }
+  EXPECT_GT(std::abs(energy.integration_error()), 0.2 * energy.largest);
+  EXPECT_TRUE(is_error_large(energy));
+}
+
+/// A ball between two walls, whose contacts gain.
+TEST(EnergyWatch, KeepsWhatIsMadeWhereNothingTakesIt) {
+  engine::NetworkDescription scene = led_by_a_damper();
+  scene.integrator = engine::IntegratorKind::kCordis;
+  scene.mats[0].kind = engine::MatKind::kFixed;
+  scene.links = {{0, 1, 0.0, 0.0, 0.0}};
+  engine::StateMachine contact;  // K' = 3, met at other phases each time
+  contact.states.resize(1);
+  contact.states[0].stiffness = 3e5;
+  contact.states[0].pulls = false;
+  scene.state_machines = {contact};
+  engine::Mat wall = scene.mats[0];
+  wall.position.x() = 0.0137;
+  scene.mats.push_back(wall);
+  scene.state_links = {{0, 1, 0, 0.001}, {1, 2, 0, 0.001}};
+  scene.mats[1].position.x() = 0.005;
+  scene.mats[1].velocity.x() = 0.31;
+  engine::World world(std::make_shared<const engine::Network>(scene));
+  EnergyWatch watch;
+  bool is_told = false;
+  for (int n = 0; n < 20'000 && !is_told; ++n) {
+    world.step();
+    const engine::Energy energy = watch.update(world);
+    EXPECT_NEAR(energy.made_there, energy.integration_error(), 1e-9 * energy.largest);
+    is_told = makes_energy(energy);
+  }
+  EXPECT_TRUE(is_told);
 }
 
 TEST(ShadowWorld, SeesWhatTheWorldIs) {

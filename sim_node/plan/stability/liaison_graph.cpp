@@ -407,6 +407,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         std::max(slope.stiffness, stiffness_across_at(machine, network.dimension, start));
     if (network.dimension == 1 && slope.uncertainty == nullptr)
       slope.uncertainty = jumps_from_behind(machine, start);
+    if (slope.uncertainty == nullptr) slope.uncertainty = starts_at_one_point(machine, start);
     note(network, slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,

@@ -108,6 +108,7 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
     nearest = std::min(nearest, pair.distance);
     here.begins.low = std::min(here.begins.low, point.elongation);
     here.begins.high = std::max(here.begins.high, point.elongation);
+    if (start.uncertainty == nullptr) start.uncertainty = starts_at_one_point(state_machine, point);
     if (!on_surfaces)
       start.across =
           std::max(start.across, stiffness_across_at(state_machine, network.dimension, point));
@@ -139,6 +140,7 @@ Slope largest_slope_of(const NetworkDescription& network, const engine::SetLiais
     slope = largest_slope(state_machine, start.rest_length, network.dimension, start.reach);
   }
   slope.stiffness = std::max(slope.stiffness, start.across);
+  if (slope.uncertainty == nullptr) slope.uncertainty = start.uncertainty;
   return with_friction(slope, state_machine);
 }
 

@@ -18,7 +18,8 @@ struct SetStart {
   double fall = 0.0;     ///< what the potential of a pair may fall by; infinite without an end [J]
   double stored = 0.0;   ///< by all pairs [J]
   bool is_known = true;  ///< false: the pairs are too many to look at
-  bool all_begin_within = false;  ///< every pair is within range
+  bool all_begin_within = false;      ///< every pair is within range
+  const char* uncertainty = nullptr;  ///< why a pair keeps every step from being certain
 };
 
 /// O(members + pairs). @param reach  of the network

@@ -21,6 +21,8 @@ constexpr const char* kPullsWhereEndsMeet =
     "it still pulls where its ends meet, and turns there without a limit";
 constexpr const char* kPassesThrough =
     "nothing keeps its ends from passing each other, and there its force jumps";
+constexpr const char* kAtOnePoint =
+    "it joins two MATs that start at one point, where its energy has no limit";
 constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
@@ -246,6 +248,14 @@ const char* jumps_from_behind(const engine::StateMachine& state_machine,
   const engine::LinkState& state = state_machine.states[state_machine.start];
   const bool is_balls = std::holds_alternative<engine::LennardJones>(state.elasticity);
   return is_balls && !state.pulls && point.distance < 0.0 ? kPassesThrough : nullptr;
+}
+
+const char* starts_at_one_point(const engine::StateMachine& state_machine,
+                                const engine::LawPoint& point) {
+  const auto& law = state_machine.states[state_machine.start].elasticity;
+  const auto* const balls = std::get_if<engine::LennardJones>(&law);
+  return balls != nullptr && balls->well_depth > 0.0 && point.distance == 0.0 ? kAtOnePoint
+                                                                              : nullptr;
 }
 
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine) {

@@ -59,6 +59,11 @@ bool pull_jumps_where_pairs_pass(const engine::StateMachine& state_machine, doub
 const char* jumps_from_behind(const engine::StateMachine& state_machine,
                               const engine::LawPoint& point);
 
+/// Why nothing is certain of ends that begin at one point; null: something is. Lennard-Jones has no force there,
+/// and a force without a limit beside it.
+const char* starts_at_one_point(const engine::StateMachine& state_machine,
+                                const engine::LawPoint& point);
+
 /// A state machine of the state of the start alone.
 engine::StateMachine start_state_alone(const engine::StateMachine& state_machine);
 
