@@ -91,6 +91,21 @@ std::string turning_text(const SceneCheck& check) {
       turning.energy);
 }
 
+/// Where the step is surely unstable: from which rate on it is not.
+std::string unstable_text(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  const double certain =
+      check.plan.certain_step > 0.0 ? check.plan.certain_step : stability.certified.step;
+  if (const double rate = check.rate_above(1.0 / certain); rate <= scene::kHighestStepRate)
+    return fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n", rate);
+  const double uncertain = check.rate_above(1.0 / stability.diverging_step);
+  if (stability.uncertainty && uncertain <= scene::kHighestStepRate)
+    return fmt::format(
+        "stability   UNSTABLE: take a rate_hz of {:.0f} or more, none of which is certain\n",
+        uncertain);
+  return "stability   UNSTABLE at every rate_hz: take less stiffness or more mass\n";
+}
+
 std::string stability_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   const double certain = check.plan.certain_step;
@@ -102,11 +117,7 @@ std::string stability_text(const SceneCheck& check) {
         stability.turning.liaison ? " in which no link turns about" : "",
         is_guaranteed(stability) ? "" : " with the partners below", 100.0 * check.plan.margin());
   } else if (stability.diverges()) {
-    const double rate =
-        check.rate_above(1.0 / (is_any_certain ? certain : stability.certified.step));
-    text = rate > scene::kHighestStepRate
-               ? "stability   UNSTABLE at every rate_hz: take less stiffness or more mass\n"
-               : fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n", rate);
+    text = unstable_text(check);
   } else if (stability.uncertainty) {
     text = fmt::format(
         "stability   not certain: {};\n            energy and K' + 2 Z' are watched during "

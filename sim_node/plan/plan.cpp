@@ -116,7 +116,11 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
     const ContactBound& contact = graph.contacts.front();
     load.together = most = std::numeric_limits<double>::infinity();
     load.worst.liaison = {LiaisonKind::kSet, contact.set};
-    load.worst.mat = contact.members.front();
+    const auto is_mass = [&](std::uint32_t mat) { return graph.inverse_mass[mat] > 0.0; };
+    const bool of_members = std::ranges::any_of(contact.members, is_mass);
+    const std::vector<std::uint32_t>& moved = of_members ? contact.members : contact.others;
+    const auto first = std::ranges::find_if(moved, is_mass);
+    load.worst.mat = first == moved.end() ? moved.front() : *first;
   }
   for (const Edge& edge : graph.edges) {
     const bool to_port = network.mats[edge.mat_a].kind == engine::MatKind::kPort ||

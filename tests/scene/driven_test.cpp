@@ -248,7 +248,7 @@ matter:
   a: {kind: box, center_m: [0, 0], size_m: [1, 1], ^velocity_m_per_s: [1, 0], driven: {displacement_m: [0, 0]}}
 )",
      "unknown key 'velocity_m_per_s' in matter 'a'",
-     "known keys: kind, driven, center_m, size_m, color"},
+     "known keys: kind, driven, center_m, size_m, sides, color"},
     {kHead1,
      "matter:\n  a: {kind: fixed, driven: {position_m: {at_s: ^[0, 2, 2], values: [1, 2, 3]}}}\n",
      "'at_s' in 'position_m' in 'driven' of matter 'a' must grow from each time to the next, got 2 "

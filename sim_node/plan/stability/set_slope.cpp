@@ -108,11 +108,11 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
     nearest = std::min(nearest, pair.distance);
     here.begins.low = std::min(here.begins.low, point.elongation);
     here.begins.high = std::max(here.begins.high, point.elongation);
-    if (start.uncertainty == nullptr) start.uncertainty = starts_at_one_point(state_machine, point);
     if (!on_surfaces)
       start.across =
           std::max(start.across, stiffness_across_at(state_machine, network.dimension, point));
   }
+  if (near.any_at_one_point()) start.uncertainty = starts_at_one_point(state_machine, {});
   const auto& law = state_machine.states[state_machine.start].elasticity;
   const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
   start.fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);

@@ -95,6 +95,8 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
           (network.mats[mat_of(set, second)].position - network.mats[mat_of(set, first)].position)
               .norm();
       if (distance > 0.0 && distance < set.range) pairs_.push_back({first, second, distance});
+      any_at_one_point_ =
+          any_at_one_point_ || (distance == 0.0 && mat_of(set, first) != mat_of(set, second));
     }
   }
 }
