@@ -75,7 +75,8 @@ std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& net
     if (link.stiffness > 0.0 && link.rest_length > 0.0) length = std::min(length, link.rest_length);
     const double speed =
         std::sqrt(2.0 * here.brought * here.inverse_mass) + (here.held ? here.speed : 0.0);
-    if (speed * network.step > kMaxTurn * length) return LiaisonId{LiaisonKind::kLink, index};
+    if (graph.fed_by_forces || speed * network.step > kMaxTurn * length)
+      return LiaisonId{LiaisonKind::kLink, index};
   }
   return {};
 }

@@ -179,6 +179,19 @@ TEST(Certificate, IsNotGivenToBallsThatStartAtOnePoint) {
   }
 }
 
+TEST(Certificate, TakesNoNoticeOfFixedPointsAtOnePoint) {
+  NetworkDescription scene = mass_at(Vec3(0.0146, 0, 0), 2, 4000.0);
+  scene.mats[1].mass = 0.0124;
+  scene.mats.push_back(scene.mats[0]);
+  scene.state_machines = {state_machine(0.0, engine::LennardJones{0.0082, 0.0146, 0.0437})};
+  engine::SetLiaison set;
+  set.set_p = {0, 1, 2};
+  set.range = 0.0437;
+  set.rest_length = 0.0146;
+  scene.sets = {set};
+  EXPECT_FALSE(stability_at_start(scene).uncertainty.has_value());
+}
+
 TEST(Certificate, IsNotSureThatModesDivergeBySpeedsOfALaterTime) {
   NetworkDescription scene = mass_at(Vec3(0.1, 0, 0), 1, 2700.0);
   scene.integrator = engine::IntegratorKind::kModal;

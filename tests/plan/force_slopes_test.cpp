@@ -201,6 +201,22 @@ TEST(ForceSlopes, LeaveNoLawToAnEnergyThatNothingBounds) {
   EXPECT_FALSE(plan::stability_of(scene, plan::liaison_graph(scene)).uncertainty);
 }
 
+/// A spring of K' = 5 alone diverges; a force that pushes away leaves K' = 3 of it.
+TEST(ForceSlopes, MakeNothingSurelyUnstable) {
+  for (const double apart : {0.0, 1.0}) {  // share of the push
+    NetworkDescription scene =
+        under(Term(apart * 2e6) * coordinate(0), Term(apart * 2e6) * coordinate(1));
+    scene.step = 1e-3;
+    scene.mats[0].mass = 1.0;
+    scene.mats[0].position = Vec3(0.001, 0, 0);
+    scene.mats.push_back(fixed(Vec3::Zero()));
+    scene.links = {{1, 0, 5e6, 0.0, 0.0}};
+    if (apart == 0.0) scene.drives.clear();
+    EXPECT_EQ(plan::stability_of(scene, plan::liaison_graph(scene)).diverges(), apart == 0.0);
+    EXPECT_EQ(largest_excursion(scene, 2000) > 1.0, apart == 0.0);
+  }
+}
+
 TEST(ForceSlopes, TheReferenceIntegratorFollowsTheEllipse) {
   const double w = std::sqrt(5.0 / 0.5);
   NetworkDescription scene = under(Term(-5.0) * coordinate(0), Term(-5.0) * coordinate(1));

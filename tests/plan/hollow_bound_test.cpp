@@ -212,6 +212,23 @@ TEST(HollowBound, TellsOfABallThatComesThroughTheWallAsOfAPlane) {
   }
 }
 
+/// A spring to the middle at the place of the start: what it brings farther out is not known.
+TEST(HollowBound, IsNotCertainBesideAForceByPlace) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {mass(0.01, Vec3::Zero(), Vec3(0.0, -1.0, 0.0))};
+  scene.radius = {0.01};
+  touch(scene, 1, contact(400.0), 0.01, -1.0, add_hollow(scene, kRoom, Vec3::Zero()));
+  engine::TimeFunction well;
+  well.formula[0] = (Term(-0.1) * q(engine::kPlaceInForce[0])).program;
+  scene.time_functions = {well};
+  scene.drives = {{0, 0, true}};
+  const plan::Stability stability = plan::plan_of(scene, 10.0).stability;
+  ASSERT_TRUE(stability.uncertainty.has_value());
+  EXPECT_EQ(stability.uncertainty->liaison.kind, engine::LiaisonKind::kForce);
+}
+
 /// @return how far the world is from the reference after this time [m]
 double away_from_reference(const NetworkDescription& scene, int steps) {
   World world = make_world(scene);

@@ -359,6 +359,16 @@ namespace {
 constexpr const char* kBringsEnergy =
     "nothing bounds the energy that it brings to a law without a largest slope";
 
+constexpr const char* kPresses =
+    "nothing bounds the energy with which it presses balls against a surface that they may pass";
+
+/// True if a set touches a surface whose normal flips.
+bool may_pass_a_surface(const NetworkDescription& network) {
+  return std::ranges::any_of(network.sets, [&](const engine::SetLiaison& set) {
+    return engine::acts_on_surfaces(network, set) && std::isfinite(flips_at(network, set));
+  });
+}
+
 /// Adds the driven forces that depend on more than time. Precondition: all else is in the graph.
 void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
   std::vector<std::optional<ForceSlopes>> known(network.time_functions.size());
@@ -370,8 +380,11 @@ void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
     const LiaisonId liaison{LiaisonKind::kForce, d};
     if (!graph.uncertainty && !slopes->uncertainty.empty())
       graph.uncertainty = {liaison, slopes->uncertainty};
+    graph.fed_by_forces = graph.fed_by_forces || slopes->brings_energy;
     if (!graph.uncertainty && !graph.bounded && slopes->brings_energy)
       graph.uncertainty = {liaison, kBringsEnergy};
+    if (!graph.uncertainty && slopes->brings_energy && may_pass_a_surface(network))
+      graph.uncertainty = {liaison, kPresses};
     if (slopes->stiffness > 0.0 || slopes->viscosity > 0.0) {
       graph.forces.push_back(
           {drive.mat, slopes->stiffness, slopes->viscosity, slopes->variation, liaison});
@@ -407,7 +420,10 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         std::max(slope.stiffness, stiffness_across_at(machine, network.dimension, start));
     if (network.dimension == 1 && slope.uncertainty == nullptr)
       slope.uncertainty = jumps_from_behind(machine, start);
-    if (slope.uncertainty == nullptr) slope.uncertainty = starts_at_one_point(machine, start);
+    const bool any_moves = network.mats[link.mat_a].kind != engine::MatKind::kFixed ||
+                           network.mats[link.mat_b].kind != engine::MatKind::kFixed;
+    if (slope.uncertainty == nullptr && any_moves)
+      slope.uncertainty = starts_at_one_point(machine, start);
     note(network, slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,
                            link.mat_b,

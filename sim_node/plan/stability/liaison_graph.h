@@ -75,7 +75,8 @@ struct LiaisonGraph {
   std::vector<ContactBound> contacts;
   std::vector<ForceBound> forces;
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
-  bool bounded = true;  ///< false: a law has no largest slope of its own; see Reach
+  bool bounded = true;         ///< false: a law has no largest slope of its own; see Reach
+  bool fed_by_forces = false;  ///< driven forces bring in energy that is not in the reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
   Turning turning;
   Reach reach;  ///< the reach to which laws without a largest slope were followed

@@ -29,6 +29,14 @@ bool reaches_all(const engine::NetworkDescription& network, const engine::SetLia
   return (highest - lowest).norm() < set.range;
 }
 
+bool any_moves(const engine::NetworkDescription& network, std::uint32_t mat_a,
+               std::uint32_t mat_b) {
+  const auto moves = [&](std::uint32_t mat) {
+    return network.mats[mat].kind != engine::MatKind::kFixed;
+  };
+  return moves(mat_a) || moves(mat_b);
+}
+
 }  // namespace
 
 void StartPairs::measure_surfaces(const engine::NetworkDescription& network,
@@ -96,7 +104,8 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
               .norm();
       if (distance > 0.0 && distance < set.range) pairs_.push_back({first, second, distance});
       any_at_one_point_ =
-          any_at_one_point_ || (distance == 0.0 && mat_of(set, first) != mat_of(set, second));
+          any_at_one_point_ || (distance == 0.0 && mat_of(set, first) != mat_of(set, second) &&
+                                any_moves(network, mat_of(set, first), mat_of(set, second)));
     }
   }
 }

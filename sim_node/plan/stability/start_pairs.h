@@ -27,7 +27,7 @@ class StartPairs {
 
   bool are_kept() const noexcept { return kept_; }
   const std::vector<StartPair>& pairs() const noexcept { return pairs_; }  ///< none unless kept
-  /// True if two members are at one point: no pair, for it exerts no force.
+  /// True if two members, not both fixed, are at one point: no pair, for it exerts no force.
   bool any_at_one_point() const noexcept { return any_at_one_point_; }
   /// By member: how many others are in range.
   const std::vector<std::uint32_t>& counts() const noexcept { return counts_; }

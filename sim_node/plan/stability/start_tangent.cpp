@@ -139,6 +139,11 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     add(link.mat_a, link.mat_b, network, stiffness, tension,
         weights.link_viscosity * link.viscosity, 0.0);
   }
+  // What a force that pushes away takes from a stiffness is not known: so nothing is sure of its MAT.
+  for (const engine::Drive& drive : network.drives) {
+    if (drive.is_force && !is_of_time(network.time_functions[drive.function]))
+      hold(drive.mat, drive.mat);
+  }
   std::uint32_t index = 0;
   for (const engine::StateLink& link : network.state_links) {
     const Tangent tangent =
