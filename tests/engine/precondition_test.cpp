@@ -72,7 +72,7 @@ TEST(PreconditionDeathTest, EachMisuseIsNamedAndEndsTheProgram) {
       {"slot_", [&] { world.impose_position(1, Vec3::Zero()); }},  // a mass is no port
       {"slot_", [&] { world.impose_position(9, Vec3::Zero()); }},
       {"is_mass", [&] { world.set_external_force(0, Vec3::Zero()); }},
-      {"link_count_", [&] { world.force_state(3, 0); }},
+      {"row_of_link", [&] { world.force_state(3, 0); }},
       {"states.size", [&] { world.force_state(0, 2); }},
       {"state_links", [&] { world.state_of(1); }},
       {"state_links", [&] { world.rest_length_of(1); }},
