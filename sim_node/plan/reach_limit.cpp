@@ -55,9 +55,13 @@ bool is_of_balls(const engine::StateMachine& state_machine) {
     return std::holds_alternative<engine::Power>(law) ||
            std::holds_alternative<engine::Expression>(law);
   };
-  return std::ranges::none_of(state_machine.states, [&](const engine::LinkState& state) {
-    return is_free(state.elasticity) || is_free(state.dissipation);
-  });
+  const auto are_balls = [](const engine::LinkState& state) {
+    return std::holds_alternative<engine::LennardJones>(state.elasticity);
+  };
+  return std::ranges::any_of(state_machine.states, are_balls) &&
+         std::ranges::none_of(state_machine.states, [&](const engine::LinkState& state) {
+           return is_free(state.elasticity) || is_free(state.dissipation);
+         });
 }
 
 /// The energy below which the slope of Lennard-Jones is not looked at [J].
