@@ -313,7 +313,7 @@ test('cordis cut, merge, info, echo and recover', async () => {
 
 test('cordis lab', async () => {
   for (const [line, origin] of ofVerb('lab')) {
-    const quick = line.includes('--quick') ? line : `${line} --quick --duration 100ms`;
+    const quick = line.includes('--quick') ? line : `${line} --quick --duration 400ms`;
     await runs(`${quick} --out lab_${(written += 1)}`, origin);
   }
 });
