@@ -29,8 +29,8 @@ engine::Energy EnergyWatch::read(const engine::World& world) const noexcept {
   return energy;
 }
 
-/// What is made joins the energy that is there, and viscosity takes its share of both.
-void EnergyWatch::mix(const engine::Energy& energy, std::uint64_t step) noexcept {
+/// Adds the integration error since the last update. Viscosity dissipates the same share of it as of all energy.
+void EnergyWatch::update_made(const engine::Energy& energy, std::uint64_t step) noexcept {
   const double error = energy.integration_error();
   if (!std::isfinite(error)) {
     made_ = error;
@@ -49,7 +49,7 @@ void EnergyWatch::mix(const engine::Energy& energy, std::uint64_t step) noexcept
 engine::Energy EnergyWatch::update(const engine::World& world) noexcept {
   engine::Energy energy = read(world);
   if (std::isfinite(energy.largest)) largest_ = energy.largest;
-  mix(energy, world.step_count());
+  update_made(energy, world.step_count());
   energy.made_there = made_;
   return energy;
 }

@@ -13,14 +13,15 @@ class EnergyWatch {
  public:
   /// Takes what a KineticWatch of the same world has seen [J].
   void add(double largest_kinetic) noexcept;
-  /// The energy of the world now; Energy::largest is that over all moments so far, and Energy::made_there what
-  /// the steps have made of the energy that is there. Real time: O(MATs + links + pairs), no allocation.
+  /// The energy of the world now. Energy::largest is the largest of all moments so far. Energy::made_there is
+  /// the integration error that viscosity has not dissipated since. Real time: O(MATs + links + pairs), no
+  /// allocation.
   engine::Energy update(const engine::World& world) noexcept;
   /// As update(), and keeps nothing.
   engine::Energy read(const engine::World& world) const noexcept;
 
  private:
-  void mix(const engine::Energy& energy, std::uint64_t step) noexcept;
+  void update_made(const engine::Energy& energy, std::uint64_t step) noexcept;
 
   double largest_ = 0.0;     // [J]
   double made_ = 0.0;        // [J]

@@ -40,8 +40,8 @@ WorldFigures figures_of(const engine::World& world, EnergyWatch& watch,
 /// @param energy  as an EnergyWatch has it; likewise below
 bool is_error_large(const engine::Energy& energy) noexcept;
 
-/// True when of the energy that is there the steps have made more than a tenth of the largest. What they make in
-/// each period while a hand plays on adds up; where viscosity takes it, nothing grows.
+/// True when Energy::made_there is above a tenth of the largest energy. Small errors of each period may sum to
+/// more while a hand plays on: viscosity dissipates them, and no motion grows.
 bool makes_energy(const engine::Energy& energy) noexcept;
 
 /// Real time: O(MATs), no allocation.

@@ -694,7 +694,7 @@ double parting_of(const NetworkDescription& scene) {
   return most / before;
 }
 
-/// Without speeds, and with a step in which nothing moves. What is driven would drag at its dampers.
+/// The start has no velocities, and the first step moves nothing. Driven scenes are left out: their dampers pull.
 TEST(RandomScenes, BeginAtRestWhereTheySettle) {
   std::uint32_t settled = 0;
   for (const std::uint32_t seed : seeds()) {

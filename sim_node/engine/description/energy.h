@@ -48,8 +48,8 @@ struct Energy {
   double largest = 0.0;            ///< largest magnitude of an entry above,
                                    ///< and that port_work ever had:
                                    ///< the scale for a relative residual
-  double made_there = 0.0;         ///< part of integration_error() that viscosity has not taken
-                                   ///< since, as an EnergyWatch finds it; else 0
+  double made_there = 0.0;         ///< part of integration_error() that viscosity has not
+                                   ///< dissipated since: only an EnergyWatch fills it
 
   double total() const noexcept { return kinetic + elastic + gravity; }
   /// What the integration has put in (> 0) or taken (< 0) and no account explains [J]:
