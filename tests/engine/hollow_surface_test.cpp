@@ -271,18 +271,25 @@ TEST(HollowContact, KeepsBallsInsideAndTheirEnergy) {
   }
 }
 
+/// Random balls in and around random hollow bodies, whose centres are within `away` of the origin.
+NetworkDescription among_bodies(unsigned seed, std::uint32_t balls, int bodies, double away,
+                                const LinkState& law) {
+  Chance chance(seed);
+  const int dimension = 1 + static_cast<int>(seed % 3);
+  NetworkDescription scene = cloud(balls, 1.2, 2.0, dimension, seed);
+  std::vector<std::uint32_t> surfaces;
+  for (int b = 0; b < bodies; ++b) {
+    for (const std::uint32_t one :
+         add_hollow(scene, any_body(chance, dimension), chance.place(away, dimension)))
+      surfaces.push_back(one);
+  }
+  touch(scene, balls, of_one_state(law), kHollowBall, -1.0, surfaces);
+  return scene;
+}
+
 TEST(HollowContact, HasTheSameBitsOnEveryVectorWidthAndAfterRestore) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
-    Chance chance(seed);
-    const int dimension = 1 + static_cast<int>(seed % 3);
-    NetworkDescription scene = cloud(60, 1.2, 2.0, dimension, seed);
-    std::vector<std::uint32_t> surfaces;
-    for (int b = 0; b < 3; ++b) {
-      for (const std::uint32_t one :
-           add_hollow(scene, any_body(chance, dimension), chance.place(0.4, dimension)))
-        surfaces.push_back(one);
-    }
-    touch(scene, 60, of_one_state(contact(400.0, 0.2)), kHollowBall, -1.0, surfaces);
+    const NetworkDescription scene = among_bodies(seed, 60, 3, 0.4, contact(400.0, 0.2));
     std::optional<std::uint64_t> hash;
     for (const engine::VectorWidth width : engine::supported_vector_widths()) {
       World world = make_world(scene, width);
@@ -301,16 +308,7 @@ TEST(HollowContact, HasTheSameBitsOnEveryVectorWidthAndAfterRestore) {
 /// It is a plain sum over all surfaces that act at a place.
 TEST(HollowContact, IsTheSumOverAllSurfacesThatAct) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
-    Chance chance(seed);
-    const int dimension = 1 + static_cast<int>(seed % 3);
-    NetworkDescription scene = cloud(30, 1.2, 2.0, dimension, seed);
-    std::vector<std::uint32_t> surfaces;
-    for (int b = 0; b < 2; ++b) {
-      for (const std::uint32_t one :
-           add_hollow(scene, any_body(chance, dimension), chance.place(0.3, dimension)))
-        surfaces.push_back(one);
-    }
-    touch(scene, 30, of_one_state(contact(400.0, 0.0)), kHollowBall, -1.0, surfaces);
+    const NetworkDescription scene = among_bodies(seed, 30, 2, 0.3, contact(400.0, 0.0));
     World world = make_world(scene);
     std::vector<Vec3> now;
     std::vector<Vec3> before;

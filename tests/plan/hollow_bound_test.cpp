@@ -16,63 +16,45 @@
 #include "tests/engine/programs.h"
 #include "tests/engine/surfaces.h"
 #include "tests/plan/networks.h"
+#include "tests/plan/shapes.h"
 
 namespace cordis::test {
 namespace {
 
-constexpr double kLayer = 0.05;  // reach of the force [m]
-
-/// Some bodies and how many of their surfaces a place may have in reach.
-struct Bodies {
-  std::vector<Surface> surfaces;
-  std::vector<Vec3> centres;
-
-  Bodies& add(const Surface& surface, const Vec3& centre = Vec3::Zero()) {
-    surfaces.push_back(surface);
-    centres.push_back(centre);
-    return *this;
-  }
-  Bodies& add_hollow(const Surface& body, const Vec3& centre = Vec3::Zero()) {
-    for (const Surface& surface : engine::hollow_surfaces(body)) add(surface, centre);
-    return *this;
-  }
-  double most(int dimension = 3, double reach = kLayer) const {
-    return plan::max_surfaces_in_reach(surfaces, centres, reach, dimension);
-  }
-};
+constexpr double kLayer = kReachOfShapes;
 
 const Surface kRoom = box(Vec3(0.3, 0.4, kNoEnd));
 const Surface kTube = cylinder(Vec3::UnitZ(), 0.3);
 
 TEST(HollowBound, CountsTheFacesOfOneCorner) {
-  EXPECT_EQ(Bodies().add_hollow(box(Vec3::Constant(0.3))).most(), 3.0);
-  EXPECT_EQ(Bodies().add_hollow(kRoom).most(2), 2.0);
-  EXPECT_EQ(Bodies().add_hollow(kRoom).most(3), 2.0);
-  EXPECT_EQ(Bodies().add_hollow(box(Vec3(0.3, kNoEnd, kNoEnd))).most(1), 1.0);
-  EXPECT_EQ(Bodies().add_hollow(kTube).most(2), 1.0);
-  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.5)).most(), 2.0);
+  EXPECT_EQ(Shapes().add_hollow(box(Vec3::Constant(0.3))).most(), 3.0);
+  EXPECT_EQ(Shapes().add_hollow(kRoom).most(kLayer, 2), 2.0);
+  EXPECT_EQ(Shapes().add_hollow(kRoom).most(kLayer, 3), 2.0);
+  EXPECT_EQ(Shapes().add_hollow(box(Vec3(0.3, kNoEnd, kNoEnd))).most(kLayer, 1), 1.0);
+  EXPECT_EQ(Shapes().add_hollow(kTube).most(kLayer, 2), 1.0);
+  EXPECT_EQ(Shapes().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.5)).most(), 2.0);
 }
 
 TEST(HollowBound, CountsOppositeFacesThatABallTouchesAtOnce) {
-  EXPECT_EQ(Bodies().add_hollow(box(Vec3(1.001 * kLayer, 0.4, kNoEnd))).most(2), 2.0);
-  EXPECT_EQ(Bodies().add_hollow(box(Vec3(0.999 * kLayer, 0.4, kNoEnd))).most(2), 3.0);
-  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 1.001 * kLayer)).most(), 2.0);
-  EXPECT_EQ(Bodies().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.999 * kLayer)).most(), 3.0);
+  EXPECT_EQ(Shapes().add_hollow(box(Vec3(1.001 * kLayer, 0.4, kNoEnd))).most(kLayer, 2), 2.0);
+  EXPECT_EQ(Shapes().add_hollow(box(Vec3(0.999 * kLayer, 0.4, kNoEnd))).most(kLayer, 2), 3.0);
+  EXPECT_EQ(Shapes().add_hollow(cylinder(Vec3::UnitX(), 0.3, 1.001 * kLayer)).most(), 2.0);
+  EXPECT_EQ(Shapes().add_hollow(cylinder(Vec3::UnitX(), 0.3, 0.999 * kLayer)).most(), 3.0);
 }
 
 TEST(HollowBound, CountsWhatIsInsideByItsGapFromEachFace) {
   const auto with_post = [](const Surface& body, const Vec3& place) {
-    return Bodies().add_hollow(body).add(cylinder(Vec3::UnitZ(), 0.1), place).most(2);
+    return Shapes().add_hollow(body).add(cylinder(Vec3::UnitZ(), 0.1), place).most(kLayer, 2);
   };
   EXPECT_EQ(with_post(kRoom, Vec3::Zero()), 2.0) << "the faces of a corner";
   EXPECT_EQ(with_post(kTube, Vec3(0.2 - 2.01 * kLayer, 0.0, 0.0)), 1.0);
   EXPECT_EQ(with_post(kTube, Vec3(0.2 - 1.99 * kLayer, 0.0, 0.0)), 2.0);
   // and in a corner of the room with both faces
   const auto in_corner = [&](double gap) {
-    return Bodies()
+    return Shapes()
         .add_hollow(kRoom)
         .add(box(Vec3(0.1, 0.1, kNoEnd)), Vec3(0.2 - gap, 0.3 - gap, 0.0))
-        .most(2);
+        .most(kLayer, 2);
   };
   EXPECT_EQ(in_corner(1.99 * kLayer), 3.0);
   EXPECT_EQ(in_corner(2.01 * kLayer), 2.0);
@@ -81,21 +63,27 @@ TEST(HollowBound, CountsWhatIsInsideByItsGapFromEachFace) {
 TEST(HollowBound, CountsTheOutsideOnlyWithWhatIsOutside) {
   const Surface wide = box(Vec3(kNoEnd, 0.4, kNoEnd));
   const auto with_floor = [&](double gap) {
-    return Bodies().add_hollow(wide).add(plane(Vec3::UnitY()), Vec3(0.0, -0.4 - gap, 0.0)).most(2);
+    return Shapes()
+        .add_hollow(wide)
+        .add(plane(Vec3::UnitY()), Vec3(0.0, -0.4 - gap, 0.0))
+        .most(kLayer, 2);
   };
   EXPECT_EQ(with_floor(1.99 * kLayer), 2.0) << "the floor and the outside, above it";
   // Matter belongs above the floor, and is pushed out of what lies below: outside of the body that is so too.
   const auto with_wall = [&](double gap) {
-    return Bodies()
+    return Shapes()
         .add_hollow(wide)
         .add(plane(Vec3::UnitY(), true), Vec3(0.0, -0.4 - gap, 0.0))
-        .most(2);
+        .most(kLayer, 2);
   };
   EXPECT_EQ(with_wall(1.99 * kLayer), 2.0);
   EXPECT_EQ(with_wall(2.01 * kLayer), 1.0);
   // One in the other: between them are the outside of one and the inside of the other.
   const auto nested = [&](double gap) {
-    return Bodies().add_hollow(kTube).add_hollow(cylinder(Vec3::UnitZ(), 0.3 - gap)).most(2);
+    return Shapes()
+        .add_hollow(kTube)
+        .add_hollow(cylinder(Vec3::UnitZ(), 0.3 - gap))
+        .most(kLayer, 2);
   };
   EXPECT_EQ(nested(1.99 * kLayer), 2.0);
   EXPECT_EQ(nested(2.01 * kLayer), 1.0);
@@ -107,7 +95,7 @@ TEST(HollowBound, IsNeverBelowTheTrueNumberAtAnyPlace) {
   for (unsigned seed = 1; seed <= 90; ++seed) {
     Chance chance(seed);
     const int dimension = 2 + static_cast<int>(seed % 2);
-    Bodies bodies;
+    Shapes bodies;
     for (int s = 0; s < 5; ++s) {
       Surface body = chance.shape(dimension);
       const bool is_body = body.kind == SurfaceKind::kBox || body.kind == SurfaceKind::kCylinder;
@@ -121,7 +109,7 @@ TEST(HollowBound, IsNeverBelowTheTrueNumberAtAnyPlace) {
       }
     }
     const double reach = chance(0.03, 0.2);
-    const double bound = bodies.most(dimension, reach);
+    const double bound = bodies.most(reach, dimension);
     double most = 0.0;
     for (int n = 0; n < 4000; ++n) {
       const Vec3 here = chance.place(0.9, dimension);

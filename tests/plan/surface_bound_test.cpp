@@ -17,28 +17,14 @@
 #include "tests/engine/programs.h"
 #include "tests/engine/surfaces.h"
 #include "tests/plan/networks.h"
+#include "tests/plan/shapes.h"
 
 namespace cordis::test {
 namespace {
 
 using plan::max_surfaces_in_reach;
 
-constexpr double kReach = 0.05;
-
-/// Some surfaces and their centres.
-struct Shapes {
-  std::vector<Surface> surfaces;
-  std::vector<Vec3> centres;
-
-  Shapes& add(const Surface& surface, const Vec3& centre = Vec3::Zero()) {
-    surfaces.push_back(surface);
-    centres.push_back(centre);
-    return *this;
-  }
-  double most(double reach = kReach, int dimension = 3) const {
-    return max_surfaces_in_reach(surfaces, centres, reach, dimension);
-  }
-};
+constexpr double kReach = kReachOfShapes;
 
 TEST(SurfaceBound, CountsAFloorAndAWallTogetherAndTwoWallsFarApartOnce) {
   Shapes floor;

@@ -21,6 +21,18 @@
 namespace cordis::viz {
 namespace {
 
+/// Pixels in the middle of an image of 320 x 180 that have the colour of the first body.
+int blue_pixels(Image& image) {
+  int count = 0;
+  for (int y = 40; y < 140; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      const std::uint8_t* pixel = image.pixel(x, y);
+      count += pixel[2] > pixel[0] + 40 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
 using Surfaces = std::vector<msg::SurfaceDescription>;
 
 struct BallScene {
@@ -215,13 +227,7 @@ TEST(SurfaceFigure, HidesABallBehindABoxAndNoneBeforeIt) {
 
     FilmView view(scene.description, {.width = 320, .height = 180, .view = ViewPreset::kFront});
     Image image = view.draw(scene.frame);
-    int ball_pixels = 0;
-    for (int y = 40; y < 140; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        const std::uint8_t* pixel = image.pixel(x, y);
-        ball_pixels += pixel[2] > pixel[0] + 40 ? 1 : 0;  // the first body is blue
-      }
-    }
+    const int ball_pixels = blue_pixels(image);
     EXPECT_EQ(ball_pixels > 20, z > 0.0) << ball_pixels << " pixels of the ball at z " << z;
   }
 }
@@ -346,13 +352,7 @@ TEST(SurfaceFigure, ShowsABallInAHollowBox) {
                    {test::surface("box", kind, {0.0, 0.0, 0.0}, {}, {0.2, 0.2, 0.2})});
     FilmView view(scene.description, {.width = 320, .height = 180, .view = ViewPreset::kFront});
     Image image = view.draw(scene.frame);
-    int ball_pixels = 0;
-    for (int y = 40; y < 140; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        const std::uint8_t* pixel = image.pixel(x, y);
-        ball_pixels += pixel[2] > pixel[0] + 40 ? 1 : 0;  // the first body is blue
-      }
-    }
+    const int ball_pixels = blue_pixels(image);
     EXPECT_EQ(ball_pixels > 20, kind == msg::SURFACE_HOLLOW_BOX) << ball_pixels;
   }
 }

@@ -18,8 +18,9 @@ GroupedOrder by_group(const std::vector<std::size_t>& group_of_link, std::size_t
   return order;
 }
 
-void GroupedRows::fill(const std::vector<std::size_t>& group_of_link, const MatBlocks& blocks,
-                       std::size_t batch) {
+std::vector<std::uint32_t> GroupedRows::fill(const std::vector<std::size_t>& group_of_link,
+                                             const MatBlocks& blocks, std::size_t batch) {
+  std::vector<std::uint32_t> padding_mats;
   const GroupedOrder order = by_group(group_of_link, blocks.group_count());
   row_of_link.resize(group_of_link.size());
   link_of_row.reserve(padded(group_of_link.size(), batch));
@@ -38,6 +39,7 @@ void GroupedRows::fill(const std::vector<std::size_t>& group_of_link, const MatB
     }
   }
   first.push_back(link_of_row.size());
+  return padding_mats;
 }
 
 }  // namespace cordis::engine

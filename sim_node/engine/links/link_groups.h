@@ -76,8 +76,10 @@ struct GroupedRows {
   static constexpr std::uint32_t kPadding = 0xFFFFFFFFU;
 
   /// @param batch  rows that a loop takes at once
+  /// @param column_a, column_b  become 4 * MAT index of the ends of each row
   template <class Links>
-  GroupedRows(const Links& links, const MatBlocks& blocks, std::size_t batch);
+  GroupedRows(const Links& links, const MatBlocks& blocks, std::size_t batch,
+              AlignedVector<std::uint32_t>& column_a, AlignedVector<std::uint32_t>& column_b);
 
   std::size_t count() const noexcept { return link_of_row.size(); }
   std::size_t count(std::size_t group) const noexcept { return first[group + 1] - first[group]; }
@@ -87,19 +89,32 @@ struct GroupedRows {
   std::vector<std::uint32_t> row_of_link;
   std::vector<std::size_t> first;         ///< row of each group; and one more, which ends the last
   std::vector<std::size_t> links_before;  ///< number of links in the groups before each group
-  std::vector<std::uint32_t> padding_mats;  ///< by row of padding, in the order of the rows
 
  private:
-  void fill(const std::vector<std::size_t>& group_of_link, const MatBlocks& blocks,
-            std::size_t batch);
+  /// @return MATs of the rows of padding, in the order of the rows
+  std::vector<std::uint32_t> fill(const std::vector<std::size_t>& group_of_link,
+                                  const MatBlocks& blocks, std::size_t batch);
 };
 
 template <class Links>
-GroupedRows::GroupedRows(const Links& links, const MatBlocks& blocks, std::size_t batch) {
+GroupedRows::GroupedRows(const Links& links, const MatBlocks& blocks, std::size_t batch,
+                         AlignedVector<std::uint32_t>& column_a,
+                         AlignedVector<std::uint32_t>& column_b) {
   std::vector<std::size_t> group;
   group.reserve(links.size());
   for (const auto& link : links) group.push_back(blocks.group_of(link.mat_a, link.mat_b));
-  fill(group, blocks, batch);
+  const std::vector<std::uint32_t> padding_mats = fill(group, blocks, batch);
+  column_a.resize(count());
+  column_b.resize(count());
+  auto padding_mat = padding_mats.begin();
+  for (std::size_t row = 0; row < count(); ++row) {
+    if (is_padding(row)) {
+      column_a[row] = column_b[row] = 4 * *padding_mat++;
+    } else {
+      column_a[row] = 4 * links[link_of_row[row]].mat_a;
+      column_b[row] = 4 * links[link_of_row[row]].mat_b;
+    }
+  }
 }
 
 }  // namespace cordis::engine

@@ -19,25 +19,17 @@ double share_of_decay(double x) noexcept {
 
 MaxwellArray::MaxwellArray(const NetworkDescription& description, const MatBlocks& blocks)
     : is_1d_(description.dimension == 1),
-      rows_(description.maxwell_links, blocks, kStateBatch),
+      rows_(description.maxwell_links, blocks, kStateBatch, column_a_, column_b_),
       groups_(blocks),
-      column_a_(rows_.count(), 0U),
-      column_b_(rows_.count(), 0U),
       velocity_retention_(rows_.count(), 0.0),
       gain_(rows_.count(), 0.0),
       compliance_(rows_.count(), 0.0),
       tension_(rows_.count(), 0.0),
       factor_(rows_.count(), 0.0) {
-  auto padding_mat = rows_.padding_mats.begin();
-  for (std::size_t r = 0; r < rows_.count(); ++r) {
-    if (rows_.is_padding(r)) {
-      column_a_[r] = column_b_[r] = 4 * *padding_mat++;
-      continue;
-    }
-    const MaxwellLink& link = description.maxwell_links[rows_.link_of_row[r]];
+  for (std::size_t l = 0; l < description.maxwell_links.size(); ++l) {
+    const MaxwellLink& link = description.maxwell_links[l];
+    const std::uint32_t r = rows_.row_of_link[l];
     const double share = share_of_decay(link.stiffness * description.step / link.viscosity);
-    column_a_[r] = 4 * link.mat_a;
-    column_b_[r] = 4 * link.mat_b;
     velocity_retention_[r] = 1.0 - share;
     gain_[r] = link.viscosity / description.step * share;
     compliance_[r] = 1.0 / link.stiffness;

@@ -57,11 +57,11 @@ class MaxwellArray {
   StepEnergy add_undecayed(const StateKernel& kernel, const ForceColumns& columns,
                            bool grows) noexcept;
 
-  bool is_1d_;  // 1 dimension
+  bool is_1d_;                             // 1 dimension
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;  // all arrays: one value per row
   GroupedRows rows_;
   LinkGroups groups_;
-  AlignedVector<std::uint32_t> column_a_;     // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;     // all arrays: one value per row
   AlignedVector<double> velocity_retention_;  // e^(-K dt / Z)
   AlignedVector<double> gain_;                // Z (1 - e^(-K dt / Z)) / dt [N/m]
   AlignedVector<double> compliance_;          // 1 / K [m/N]

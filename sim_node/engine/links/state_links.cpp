@@ -22,11 +22,9 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       freezes_(description.freeze_tolerance > 0.0),
       dt_(description.step),
       rate_(1.0 / description.step),
-      rows_(description.state_links, blocks, kStateBatch),
+      rows_(description.state_links, blocks, kStateBatch, column_a_, column_b_),
       groups_(blocks),
       change_counts_(blocks.group_count(), 0),
-      column_a_(rows_.count(), 0U),
-      column_b_(rows_.count(), 0U),
       mass_a_(rows_.count(), 0.0),
       mass_b_(rows_.count(), 0.0),
       state_machine_(rows_.count(), 0U),
@@ -39,15 +37,9 @@ StateLinkArray::StateLinkArray(const NetworkDescription& description, const Stat
       elastic_factor_(rows_.count(), 0.0),
       viscous_factor_(rows_.count(), 0.0),
       active_(rows_.count(), kStateBatch) {
-  auto padding_mat = rows_.padding_mats.begin();
-  for (std::size_t r = 0; r < rows_.count(); ++r) {
-    if (rows_.is_padding(r)) {
-      column_a_[r] = column_b_[r] = 4 * *padding_mat++;
-      continue;
-    }
-    const StateLink& link = description.state_links[rows_.link_of_row[r]];
-    column_a_[r] = 4 * link.mat_a;
-    column_b_[r] = 4 * link.mat_b;
+  for (std::size_t l = 0; l < description.state_links.size(); ++l) {
+    const StateLink& link = description.state_links[l];
+    const std::uint32_t r = rows_.row_of_link[l];
     mass_a_[r] = mass_of(description.mats[link.mat_a]);
     mass_b_[r] = mass_of(description.mats[link.mat_b]);
     state_machine_[r] = link.state_machine;

@@ -94,15 +94,15 @@ class StateLinkArray {
   double parameter_energy(const StateTable& table, const ForceColumns& columns) const noexcept;
   double distance_at_last_call(const MatArray& mats, std::size_t row) const noexcept;
 
-  bool is_1d_;    // 1 dimension
-  bool freezes_;  // only some links are computed
-  double dt_;     // [s]
-  double rate_;   // 1 / dt [1/s]
+  bool is_1d_;                             // 1 dimension
+  bool freezes_;                           // only some links are computed
+  double dt_;                              // [s]
+  double rate_;                            // 1 / dt [1/s]
+  AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
+  AlignedVector<std::uint32_t> column_b_;  // all arrays: one value per row
   GroupedRows rows_;
   LinkGroups groups_;
   std::vector<std::size_t> change_counts_;  // of each group in this step
-  AlignedVector<std::uint32_t> column_a_;   // 4 * MAT index
-  AlignedVector<std::uint32_t> column_b_;   // all arrays: one value per row
   AlignedVector<double> mass_a_;            // [kg], 0 unless a mass
   AlignedVector<double> mass_b_;
   AlignedVector<std::uint32_t> state_machine_;

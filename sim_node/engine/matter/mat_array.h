@@ -20,10 +20,6 @@ namespace cordis::engine {
 inline std::uint32_t mat_of_padding(std::size_t row, std::size_t mat_count) noexcept {
   return static_cast<std::uint32_t>(row % mat_count);
 }
-/// Where its column begins.
-inline std::uint32_t column_of_padding(std::size_t row, std::size_t mat_count) noexcept {
-  return 4 * mat_of_padding(row, mat_count);
-}
 
 /// What moving the masses by one step reports.
 struct AdvanceReport {

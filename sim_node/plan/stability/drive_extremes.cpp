@@ -59,9 +59,10 @@ double largest_value(const NetworkDescription& network, const TimeFunction& func
   return largest;
 }
 
-/// A force that depends on more than time as it is at the start, with all variables 0 [N].
-double force_at_start(const NetworkDescription& network, const engine::Drive& drive) {
-  const std::vector<double> variables(network.variables.size(), 0.0);
+/// A force that depends on more than time as it is at the start [N].
+/// @param variables  value of each variable of the network
+double force_at_start(const NetworkDescription& network, const engine::Drive& drive,
+                      const std::vector<double>& variables) {
   const engine::Mat& mat = network.mats[drive.mat];
   return largest_of_finite(
       0.0, force_at(network, drive, {0.0, mat.position, mat.velocity, variables.data()}).norm());
@@ -89,13 +90,14 @@ double largest_drive_speed(const NetworkDescription& network) {
 
 double sum_of_drive_forces(const NetworkDescription& network) {
   std::vector<double> count(network.time_functions.size(), 0.0);
+  const std::vector<double> all_0(network.variables.size(), 0.0);
   double sum = 0.0;
   for (const engine::Drive& drive : network.drives) {
     if (!drive.is_force) continue;
     if (is_of_time(network.time_functions[drive.function])) {
       count[drive.function] += factor_of(drive);
     } else {
-      sum += force_at_start(network, drive);
+      sum += force_at_start(network, drive, all_0);
     }
   }
   for (std::size_t f = 0; f < count.size(); ++f) {

@@ -372,6 +372,7 @@ bool may_pass_a_surface(const NetworkDescription& network) {
 /// Adds the driven forces that depend on more than time. Precondition: all else is in the graph.
 void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
   std::vector<std::optional<ForceSlopes>> known(network.time_functions.size());
+  const bool may_pass = !network.drives.empty() && may_pass_a_surface(network);
   for (std::uint32_t d = 0; d < network.drives.size(); ++d) {
     const engine::Drive& drive = network.drives[d];
     if (!drive.is_force || is_of_time(network.time_functions[drive.function])) continue;
@@ -383,7 +384,7 @@ void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
     graph.fed_by_forces = graph.fed_by_forces || slopes->brings_energy;
     if (!graph.uncertainty && !graph.bounded && slopes->brings_energy)
       graph.uncertainty = {liaison, kBringsEnergy};
-    if (!graph.uncertainty && slopes->brings_energy && may_pass_a_surface(network))
+    if (!graph.uncertainty && slopes->brings_energy && may_pass)
       graph.uncertainty = {liaison, kPresses};
     if (slopes->stiffness > 0.0 || slopes->viscosity > 0.0) {
       graph.forces.push_back(
@@ -420,9 +421,7 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
         std::max(slope.stiffness, stiffness_across_at(machine, network.dimension, start));
     if (network.dimension == 1 && slope.uncertainty == nullptr)
       slope.uncertainty = jumps_from_behind(machine, start);
-    const bool any_moves = network.mats[link.mat_a].kind != engine::MatKind::kFixed ||
-                           network.mats[link.mat_b].kind != engine::MatKind::kFixed;
-    if (slope.uncertainty == nullptr && any_moves)
+    if (slope.uncertainty == nullptr && any_moves(network, link.mat_a, link.mat_b))
       slope.uncertainty = starts_at_one_point(machine, start);
     note(network, slope, {LiaisonKind::kStateLink, index}, graph);
     graph.edges.push_back({link.mat_a,

@@ -29,14 +29,6 @@ bool reaches_all(const engine::NetworkDescription& network, const engine::SetLia
   return (highest - lowest).norm() < set.range;
 }
 
-bool any_moves(const engine::NetworkDescription& network, std::uint32_t mat_a,
-               std::uint32_t mat_b) {
-  const auto moves = [&](std::uint32_t mat) {
-    return network.mats[mat].kind != engine::MatKind::kFixed;
-  };
-  return moves(mat_a) || moves(mat_b);
-}
-
 }  // namespace
 
 void StartPairs::measure_surfaces(const engine::NetworkDescription& network,

@@ -45,6 +45,13 @@ class StartPairs {
 double rest_length_of(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                       std::uint32_t mat_a, std::uint32_t mat_b);
 
+/// True if one of two MATs is no fixed point.
+inline bool any_moves(const engine::NetworkDescription& network, std::uint32_t mat_a,
+                      std::uint32_t mat_b) {
+  return network.mats[mat_a].kind != engine::MatKind::kFixed ||
+         network.mats[mat_b].kind != engine::MatKind::kFixed;
+}
+
 /// The MAT of a member.
 inline std::uint32_t mat_of(const engine::SetLiaison& set, std::uint32_t member) {
   const std::size_t count_p = set.set_p.size();
