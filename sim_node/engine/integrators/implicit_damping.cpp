@@ -193,28 +193,32 @@ void ImplicitDamping::add_response(double force) noexcept {
 }
 
 /// The part of the forces on the masses that dampers come to carry within a period: f - M A^2 M^-1 f.
-void ImplicitDamping::find_carried_forces(const MatArray& mats) noexcept {
+void ImplicitDamping::find_carried_forces(const MatArray& mats,
+                                          const AlignedVector<double>& losses) noexcept {
+  const auto kick_without_losses = [&](std::uint32_t mat) {
+    return mats.kick_of(mat, mats.force(mat) - column(losses, mat));
+  };
   std::fill(response_.begin(), response_.end(), 0.0);
   for (std::uint32_t i = 0; i < mass_.size(); ++i) {
-    if (mass_[i] > 0.0) column(response_, i) = mass_[i] * mats.kick_of(i, mats.force(i));
+    if (mass_[i] > 0.0) column(response_, i) = mass_[i] * kick_without_losses(i);
   }
   matrix_.solve(response_.data());
   for (std::size_t i = 0; i < mass_.size(); ++i) column(response_, i) *= mass_[i];
   matrix_.solve(response_.data());
   for (std::uint32_t i = 0; i < mass_.size(); ++i) {
     if (mass_[i] == 0.0) continue;
-    column(response_, i) = mass_[i] * (mats.kick_of(i, mats.force(i)) - column(response_, i));
+    column(response_, i) = mass_[i] * (kick_without_losses(i) - column(response_, i));
   }
 }
 
-ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
-                                               AlignedVector<double>& extrapolated) noexcept {
+ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<double>& extrapolated,
+                                               const AlignedVector<double>& losses) noexcept {
   const std::size_t count = mass_.size();
   const bool first = first_period_;
   // The mean velocity of the first period takes half a period of the forces.
   const double part = first ? 0.5 : 1.0;
   if (first) {
-    find_carried_forces(mats);
+    find_carried_forces(mats, losses);
     for (std::size_t i = 0; i < count; ++i) {
       column(middle_, i) =
           mass_[i] == 0.0
@@ -248,6 +252,8 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats,
     const double energy_at_begin = mass_[i] * dot(begin, begin);
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
     if (first) work.dissipated += 0.25 * dot(end - begin, column(response_, i));
+    const Vec3 known = mats.position(i) - mats.layout().vector(extrapolated.data(), i);
+    work.dissipated += (part * dt_ * dt_) * dot(known - 0.5 * (begin + end), column(losses, i));
     work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
     if (!first) column(second_, i) = 2.0 * end - column(middle_, i);
     column(displacement_, i) = end;

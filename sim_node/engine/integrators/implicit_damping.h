@@ -35,7 +35,8 @@ namespace cordis::engine {
 ///     (v(0) + v_m) I / 2 + dt (v_m - v(0)) (f - M A^2 M^-1 f) / 4,     I = dt f / 2 - M (v_m - v(0))
 ///
 /// The second term counts a creep that begins at once, whose elastic work is f v_m dt / 2. It is exact for heavy
-/// dampers and 0 without any, for decay and for creep that lasts.
+/// dampers and 0 without any, for decay and for creep that lasts. Forces l that store no energy, of which f is without
+/// here, take -l (v(0) + v_m) dt / 4.
 /// All vectors are dt times a velocity, or dt^2 times an acceleration [m], 4 x N.
 /// Source: Alexander, Diagonally implicit Runge-Kutta methods for stiff O.D.E.'s, 1977.
 class ImplicitDamping {
@@ -79,8 +80,11 @@ class ImplicitDamping {
   };
   /// Ends the period: moves the masses to x(n+1).
   /// @param extrapolated   becomes x(n+1) - dt v(n+1), stored as the MATs are
+  /// @param losses  forces of others on each MAT that store no energy, 4 x N [N]. The account has what they take at
+  ///                the extrapolated velocity, and Work::dissipated the rest up to what they take on the way.
   /// Real time: O(MATs + dampers), no allocation.
-  Work advance(MatArray& mats, AlignedVector<double>& extrapolated) noexcept;
+  Work advance(MatArray& mats, AlignedVector<double>& extrapolated,
+               const AlignedVector<double>& losses) noexcept;
 
   /// Forces of the linear dampers on each MAT in the last period [N], 4 x N.
   const AlignedVector<double>& force() const noexcept { return force_; }
@@ -100,7 +104,7 @@ class ImplicitDamping {
   double begin_of_period() const noexcept { return first_period_ ? 0.0 : -0.5; }
   double find_turning(const AlignedVector<double>& displacement,
                       AlignedVector<double>& turning) const noexcept;
-  void find_carried_forces(const MatArray& mats) noexcept;
+  void find_carried_forces(const MatArray& mats, const AlignedVector<double>& losses) noexcept;
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
 

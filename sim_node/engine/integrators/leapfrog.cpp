@@ -15,7 +15,8 @@ Leapfrog::Leapfrog(const NetworkDescription& network)
       damping_(damps_implicitly(network) ? std::make_unique<ImplicitDamping>(network) : nullptr),
       stiff_friction_(network),
       layout_(layout_of(network)),
-      velocity_(4 * network.mats.size(), 0.0) {
+      velocity_(4 * network.mats.size(), 0.0),
+      losses_(damping_ ? velocity_.size() : 0, 0.0) {
   // What asks for velocities before start() has those of the network.
   for (std::size_t i = 0; i < network.mats.size(); ++i)
     set_extrapolated(i, network.mats[i].position - network.step * network.mats[i].velocity);
@@ -119,7 +120,8 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
 /// comes after.
 std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) noexcept {
   damping_->find_velocities(world.mats, nullptr);
-  const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_);
+  world.find_viscous_forces(losses_);
+  const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_, losses_);
   const double before = started_ ? 0.5 : 0.0;
   energy.dissipated += before * work.dissipated;
   energy.port_work += before * work.port_work;

@@ -27,7 +27,8 @@ namespace cordis::engine {
 /// elongation increment. The account belongs to the moment of the last forces, all but the kinetic
 /// energy in closed form. That is the energy of the centred velocity (x(n+1) - x(n-1)) / 2 dt. With
 /// implicit dampers it is the mean of those of the two velocities. What finite steps do to it is
-/// the residual, of second order; implicit dampers, whose work is that of their forces, leave none.
+/// the residual, of second order; implicit dampers, and all dampers beside them, whose work is that
+/// of their forces, leave none.
 class Leapfrog final : public FullStepIntegrator {
  public:
   explicit Leapfrog(const NetworkDescription& network);
@@ -64,6 +65,7 @@ class Leapfrog final : public FullStepIntegrator {
   StiffFriction stiff_friction_;
   MatLayout layout_;
   AlignedVector<double> velocity_;  // dt v(n-1/2), 4 x N [m]
+  AlignedVector<double> losses_;    // explicit forces that store no energy, 4 x N [N]
 };
 
 }  // namespace cordis::engine

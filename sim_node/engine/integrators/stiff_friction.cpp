@@ -260,7 +260,9 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
     return Vec3(world.mats.position(mat) -
                 world.mats.layout().vector(around.extrapolated.data(), mat));
   };
+  solved.length = length;
   solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
+  solved.extrapolated_speed = solved.speed;
   TensionOverSpeed curve(world, solved.link);
   curve.find({solved.speed});
   solved.elastic = curve.tension(0) - curve.viscous(0);
@@ -363,11 +365,16 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
     if (!(changed > kSettled * largest)) break;
   }
   if (damping != nullptr) add_to(*damping, world, 1.0);
+  // ImplicitDamping::advance() adds the rest of what such forces take on the way.
+  const bool counts_on = damping != nullptr;
   double power = 0.0;
   for (const Solved& solved : solved_) {
     if (solved.rests) continue;
-    power += (solved.tension - solved.elastic) * solved.speed - solved.viscous_power;
+    const double viscous = solved.tension - solved.elastic;
+    const double speed = counts_on ? solved.extrapolated_speed : solved.speed;
+    power += viscous * speed - solved.viscous_power;
     world.state_links.set_tension(solved.link, solved.tension);
+    if (counts_on) world.state_links.set_viscous_tension(solved.link, viscous, solved.length);
   }
   return 0.5 * dt_ * power;
 }

@@ -64,11 +64,13 @@ class StiffFriction {
  private:
   struct Solved {
     std::uint32_t link = 0;
-    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
-    double tension = 0.0;        // [N]
-    double speed = 0.0;          // [m/s]
-    double viscous_power = 0.0;  // of the tension with the extrapolated speed [W]
-    double elastic = 0.0;        // the part of the tension that stores energy [N]
+    double half_mobility = 0.0;       // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
+    double tension = 0.0;             // [N]
+    double speed = 0.0;               // [m/s]
+    double extrapolated_speed = 0.0;  // likewise
+    double viscous_power = 0.0;       // of the tension with the extrapolated speed [W]
+    double length = 0.0;              // [m]
+    double elastic = 0.0;             // the part of the tension that stores energy [N]
     Vec3 axis = Vec3::Zero();
     bool rests = false;  // nothing to solve in this step
   };

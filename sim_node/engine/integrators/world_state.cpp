@@ -172,6 +172,13 @@ StepEnergy WorldState::work_since_last_call() const noexcept {
   return work;
 }
 
+void WorldState::find_viscous_forces(AlignedVector<double>& force) const noexcept {
+  std::fill(force.begin(), force.end(), 0.0);
+  state_links.add_viscous_forces(mats, force);
+  bends.add_viscous_forces(force);
+  sets.add_viscous_forces(force);
+}
+
 StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
   if (!freezing) {
     mats.clear_forces(*team);

@@ -68,6 +68,9 @@ struct WorldState {
   /// Energy of all links, with the linear ones in every dimension [J].
   double potential_energy() noexcept;
   StepEnergy work_since_last_call() const noexcept;
+  /// Finds the part of the last forces of links with states, bends and sets that stores no energy, 4 x N [N].
+  /// Precondition: the MATs have not moved since.
+  void find_viscous_forces(AlignedVector<double>& force) const noexcept;
 
   /// The forces of drives at the present step. Real time: O(drives), no allocation.
   void find_driven_forces() noexcept;

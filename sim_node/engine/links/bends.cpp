@@ -74,13 +74,12 @@ Vec3 BendArray::last_viscous_moment(std::size_t row) const noexcept {
   return {moment[0], moment[1], moment[2]};
 }
 
-void BendArray::add_moment(const Row& row, const Vec3& moment,
-                           const ForceColumns& columns) const noexcept {
+void BendArray::add_moment(const Row& row, const Vec3& moment, double* force) noexcept {
   const Vec3 on_a = row.shape.force_on_a(moment);
   const Vec3 on_c = row.shape.force_on_c(moment);
-  add(columns.force, row.mat_a, on_a);
-  add(columns.force, row.mat_c, on_c);
-  add(columns.force, row.mat_b, -(on_a + on_c));
+  add(force, row.mat_a, on_a);
+  add(force, row.mat_c, on_c);
+  add(force, row.mat_b, -(on_a + on_c));
 }
 
 BendSides BendArray::sides_of(const Row& row, const ForceColumns& columns) noexcept {
@@ -179,7 +178,7 @@ StepEnergy BendArray::add_bend(std::size_t bend_index, const ForceColumns& colum
     states_.set_moment(row.state_row, moment_about_middle(with_states_[row.state_row], dimension_,
                                                           sides_of(row, columns), moment));
   }
-  add_moment(row, moment, columns);
+  add_moment(row, moment, columns.force);
   return work;
 }
 
@@ -211,6 +210,11 @@ StepEnergy BendArray::work_since_last_call(const MatArray& mats) const noexcept 
     work.dissipated += 0.5 * dot(last_viscous_moment(l), moved);
   }
   return work;
+}
+
+void BendArray::add_viscous_forces(AlignedVector<double>& force) const noexcept {
+  for (std::size_t l = 0; l < rows_.size(); ++l)
+    add_moment(rows_[l], last_viscous_moment(l), force.data());
 }
 
 double BendArray::potential_energy(const MatArray& mats) const noexcept {

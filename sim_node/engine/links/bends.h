@@ -34,6 +34,9 @@ class BendArray {
                         ThreadTeam& team) noexcept;
   /// Work of the forces of the last call up to the present positions [J]. Real time: O(bends), no allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Adds the part of the forces of the last call that stores no energy to `force`, 4 x N [N]. Real time:
+  /// O(bends), no allocation.
+  void add_viscous_forces(AlignedVector<double>& force) const noexcept;
   /// Energy where the forces of the last call were computed [J]. Real time: O(bends), no allocation.
   double potential_energy(const MatArray& mats) const noexcept;
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
@@ -91,7 +94,7 @@ class BendArray {
   const Change* change_of(const Row& row) const noexcept;
   static BendSides sides_of(const Row& row, const ForceColumns& columns) noexcept;
   void put_state(const StateTable& table, Row& row) noexcept;
-  void add_moment(const Row& row, const Vec3& moment, const ForceColumns& columns) const noexcept;
+  static void add_moment(const Row& row, const Vec3& moment, double* force) noexcept;
   Vec3 viscous_moment(const Row& row, const Vec3& bend, const Vec3& moved) const noexcept;
   Vec3 last_viscous_moment(std::size_t row) const noexcept;
 

@@ -233,6 +233,19 @@ StepEnergy StateLinkArray::work_since_last_call(const MatArray& mats) const noex
   return work;
 }
 
+void StateLinkArray::add_viscous_forces(const MatArray& mats,
+                                        AlignedVector<double>& force) const noexcept {
+  const MatLayout& layout = mats.layout();
+  for (const std::uint32_t r : rows_.row_of_link) {
+    const std::uint32_t a = layout.mat_of(column_a_[r]);
+    const std::uint32_t b = layout.mat_of(column_b_[r]);
+    const Vec3 along = is_1d_ ? Vec3(Vec3::Unit(layout.axis_of(column_a_[r])))
+                              : Vec3(mats.position(b) - mats.position(a));
+    column(force, a) += viscous_factor_[r] * along;
+    column(force, b) -= viscous_factor_[r] * along;
+  }
+}
+
 double StateLinkArray::distance_at_last_call(const MatArray& mats, std::size_t row) const noexcept {
   const Vec3 along =
       mats.position_of_forces(column_b_[row] / 4) - mats.position_of_forces(column_a_[row] / 4);

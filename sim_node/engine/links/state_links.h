@@ -55,6 +55,9 @@ class StateLinkArray {
   /// Works of the forces of the last call up to the present positions. Real time: O(links), no
   /// allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Adds the part of the forces of the last call that stores no energy to `force`, 4 x N [N].
+  /// Precondition: the MATs have not moved since. Real time: O(links), no allocation.
+  void add_viscous_forces(const MatArray& mats, AlignedVector<double>& force) const noexcept;
   /// Potential energy [J] of the links at the positions of the last call, in closed form.
   double stored_energy(const StateTable& table, const MatArray& mats) const noexcept;
 
@@ -79,6 +82,10 @@ class StateLinkArray {
     const std::uint32_t row = row_of(link);
     impulse_[row] += (tension - tension_[row]) * dt_;
     tension_[row] = tension;
+  }
+  /// The part of the tension of this step that stores no energy is another one. @param length  of the link [m]
+  void set_viscous_tension(std::uint32_t link, double tension, double length) noexcept {
+    viscous_factor_[row_of(link)] = is_1d_ ? tension : tension / length;
   }
 
   void serialize(Archive& archive, const StateTable& table);

@@ -69,6 +69,10 @@ StepEnergy SetLiaisons::work_since_last_call(const MatArray& mats) const noexcep
   return energy;
 }
 
+void SetLiaisons::add_viscous_forces(AlignedVector<double>& force) const noexcept {
+  for (const SetPairs& set : sets_) set.add_viscous_forces(force);
+}
+
 double SetLiaisons::stored_energy(const StateTable& table) noexcept {
   double sum = 0.0;
   for (SetPairs& set : sets_) sum += set.stored_energy(table);

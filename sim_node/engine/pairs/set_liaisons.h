@@ -40,6 +40,7 @@ class SetLiaisons {
   void expect_team(std::size_t member_count) noexcept;
   void swap_team_room(SetLiaisons& other) noexcept;
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  void add_viscous_forces(AlignedVector<double>& force) const noexcept;
   double stored_energy(const StateTable& table) noexcept;
   Vec3 contact_force(std::uint32_t contact) const noexcept;
   void start() noexcept;

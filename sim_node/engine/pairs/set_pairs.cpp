@@ -773,6 +773,12 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
   return work;
 }
 
+void SetPairs::add_viscous_forces(AlignedVector<double>& force) const noexcept {
+  if (!has_viscous_) return;
+  for (std::size_t m = 0; m < column_.size(); ++m)
+    column(force, column_[m] / 4) += column(viscous_, m);
+}
+
 /// Adds the energy of a pair, and what it has where it comes into range, in all states.
 void SetPairs::add_potential(const StateTable& table, StateIndex state, std::size_t a,
                              std::size_t b, double distance, double rest_length,

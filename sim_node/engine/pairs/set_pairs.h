@@ -89,6 +89,9 @@ class SetPairs {
 
   /// What the forces of the last call have done since, up to the present positions.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Adds the part of the forces of the last call that stores no energy to `force`, 4 x N [N]. Real time:
+  /// O(members), no allocation.
+  void add_viscous_forces(AlignedVector<double>& force) const noexcept;
   /// Potential energy [J] of the pairs at the positions of the last call, in closed form. The first call, as
   /// the world starts, chooses where it is 0.
   double stored_energy(const StateTable& table) noexcept;
