@@ -29,15 +29,12 @@ double lightest(const LiaisonGraph& graph, const std::vector<std::uint32_t>& mat
   return most;
 }
 
-/// The first state link that `leapfrog` solves for its speed beside implicit dampers. It sees the
+/// The heaviest state link that `leapfrog` solves for its speed beside implicit dampers. It sees the
 /// speed of these, which knows how the forces change: at the root -1 its friction is not 0, adds to a
 /// spring where the dampers are light and takes from it where they are heavy. No limit is known then.
 std::optional<std::uint32_t> friction_beside_dampers(const engine::NetworkDescription& network) {
-  if (!engine::damps_implicitly(network) || !engine::solves_stiff_friction(network)) return {};
-  const std::vector<double> steps = engine::largest_extrapolated_steps(network);
-  const auto solved =
-      std::find_if(steps.begin(), steps.end(), [&](double step) { return network.step > step; });
-  return static_cast<std::uint32_t>(solved - steps.begin());
+  if (!engine::damps_implicitly(network)) return {};
+  return engine::heaviest_solved_friction(network);
 }
 
 /// The first bend whose viscosity `leapfrog` would solve in a link, beside implicit dampers: it

@@ -68,6 +68,30 @@ TEST(IntegratorLimit, OfFrictionSolvedBesideDampersIsNotCertain) {
   }
 }
 
+/// All that meet at a mass are solved where one of them is heavy: it is named, wherever it stands in the file.
+TEST(IntegratorLimit, OfFrictionBesideDampersNamesTheHeaviestThatIsSolved) {
+  NetworkDescription scene = oscillator(1.0, 1.0, 0.0, 1.0, 0.0, 1.0);
+  scene.integrator = IntegratorKind::kLeapfrog;
+  scene.mats.push_back(mass(1.0, Vec3(2.0, 0, 0)));
+  scene.links.push_back({0, 2, 0.0, 1.0, 0.0});
+  scene.state_machines.assign(3, state_machine(0.0));
+  scene.state_machines[0].states[0].viscosity = 0.01;
+  scene.state_machines[1].states[0].viscosity = 10.0;
+  scene.state_machines[2].states[0].dissipation =
+      engine::Power{0.1, 0.0};  // dry: solved at every step
+  const auto named = [&scene](const std::vector<std::uint32_t>& laws) {
+    scene.state_links.clear();
+    for (const std::uint32_t law : laws) scene.state_links.push_back({0, 1, law, 0.0});
+    const auto uncertainty = plan::uncertainty_of(scene, plan::liaison_graph(scene));
+    return uncertainty ? laws.at(uncertainty->liaison.index) : 99;
+  };
+  EXPECT_EQ(named({0, 1}), 1u);
+  EXPECT_EQ(named({1, 0}), 1u);
+  EXPECT_EQ(named({0, 1, 2}), 2u);
+  EXPECT_EQ(named({2, 1, 0}), 2u);
+  EXPECT_EQ(named({0}), 99u) << "a light one is not solved";
+}
+
 TEST(IntegratorLimit, OfModesIsWhatIsFastenedToThem) {
   NetworkDescription scene = string_in_space(20, 0.01, 4e-4);
   scene.dimension = 1;

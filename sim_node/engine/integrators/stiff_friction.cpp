@@ -193,11 +193,29 @@ std::vector<double> largest_extrapolated_steps(const NetworkDescription& network
   return steps;
 }
 
+std::optional<std::uint32_t> heaviest_solved_friction(const NetworkDescription& network) {
+  if (network.integrator != IntegratorKind::kLeapfrog) return {};
+  std::vector<double> slope(network.state_machines.size());
+  std::vector<double> viscosity(network.mats.size());
+  std::vector<double> steps(network.state_links.size());
+  find_steps(network, network.state_machines, slope, viscosity, steps);
+  std::optional<std::uint32_t> heaviest;
+  double most = 0.0;  // [1/s]
+  for (std::uint32_t l = 0; l < steps.size(); ++l) {
+    const StateLink& link = network.state_links[l];
+    const double mobility =
+        inverse_mass(network.mats[link.mat_a]) + inverse_mass(network.mats[link.mat_b]);
+    if (network.step <= steps[l] || mobility == 0.0) continue;
+    const double own = slope[link.state_machine] * mobility;
+    if (heaviest && own <= most) continue;
+    heaviest = l;
+    most = own;
+  }
+  return heaviest;
+}
+
 bool solves_stiff_friction(const NetworkDescription& network) {
-  if (network.integrator != IntegratorKind::kLeapfrog) return false;
-  const std::vector<double> steps = largest_extrapolated_steps(network);
-  return std::any_of(steps.begin(), steps.end(),
-                     [&network](double step) { return network.step > step; });
+  return heaviest_solved_friction(network).has_value();
 }
 
 StiffFriction::StiffFriction(const NetworkDescription& network)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim_node/engine/core/aligned_vector.h"
@@ -20,6 +21,10 @@ struct WorldState;
 /// than any number (dry friction, a root of the speed); infinite without viscosity. A power above 1
 /// is taken at 1 m/s, a free expression at its steepest between -1 and 1 m/s.
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network);
+
+/// The state link whose own viscosity is the heaviest for its masses among those that `leapfrog` solves at the step of
+/// this network. A law steeper than any number comes before all others. None: it solves none.
+std::optional<std::uint32_t> heaviest_solved_friction(const NetworkDescription& network);
 
 /// True if `leapfrog` solves state links of this network at its step.
 bool solves_stiff_friction(const NetworkDescription& network);
