@@ -4,7 +4,9 @@
 #include <string>
 
 #include "node/config/mapping_reader.h"
+#include "sim_node/checks/stability_check.h"
 #include "sim_node/plan/reference/trial_run.h"
+#include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
 
@@ -17,7 +19,12 @@ std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Prob
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},
       !scene.ports.empty());
-  if (!selection.uncertainty.empty()) problems.warning(asked.place, selection.uncertainty);
+  config::Place place = asked.place;
+  if (selection.unstable) {
+    place = scene::call_liaison(scene, selection.unstable->liaison).place;
+    selection.uncertainty += ": " + uncertainty_text(scene, *selection.unstable);
+  }
+  if (!selection.uncertainty.empty()) problems.warning(place, selection.uncertainty);
   if (scene.rate_is_open) {
     scene::set_step(scene, selection.rate_hz, engine::integrator_named(selection.integrator));
   } else if (scene.step_rate_hz < selection.needed_hz) {

@@ -53,9 +53,10 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
     return selection;
   }
   network.step = 1.0 / trial.rate_hz;
-  if (const auto uncertain = uncertainty_of(network, liaison_graph(network))) {
+  selection.unstable = uncertainty_of(network, liaison_graph(network));
+  if (selection.unstable) {
     selection.uncertainty =
-        "positions are not promised: it is not certain that the scene is stable: " + uncertain->why;
+        "positions are not promised: it is not certain that the scene is stable";
     return selection;
   }
   selection.rate_hz = selection.needed_hz = trial.rate_hz;

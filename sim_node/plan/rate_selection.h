@@ -1,11 +1,13 @@
 // sim_node/plan/rate_selection.h -- the integrator and the rate that a scene gets for what it asks.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/rate.h"
+#include "sim_node/plan/stability/liaison_graph.h"
 
 namespace cordis::plan {
 
@@ -16,6 +18,8 @@ struct RateSelection {
   std::string because;      ///< for a person: what asks for so much
   double error = -1.0;      ///< position error after over_s, as tried out; < 0: not tried
   std::string uncertainty;  ///< why the positions are not promised; empty when they are
+  /// Where that is why: what keeps the scene from being certain.
+  std::optional<Uncertainty> unstable = {};
 };
 
 /// Cost of a step of an integrator, in evaluations of all forces of `cordis`: about. A

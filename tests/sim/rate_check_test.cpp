@@ -1,6 +1,7 @@
 // tests/sim/rate_check_test.cpp -- scenes that have a rate and an accuracy.
 #include "sim_node/checks/rate_check.h"
 
+#include "sim_node/checks/stability_check.h"
 #include "tests/sim/loaded_scenes.h"
 #include "tests/support/filled.h"
 
@@ -41,6 +42,41 @@ TEST(SettledRate, IsThatOfTheSceneAndTooLowAWarning) {
   EXPECT_FALSE(too_low.has_errors());
   EXPECT_NE(too_low.text().find("at 500 Hz the scene does not keep this"), std::string::npos);
   EXPECT_NE(too_low.text().find("take a rate_hz of 650"), std::string::npos) << too_low.text();
+}
+
+/// A viscosity that grows with the time: nothing bounds it.
+TEST(SettledRate, NamesWhatNothingBoundsAsTheCheckOfStabilityDoes) {
+  config::Problems problems;
+  scene::Scene scene = scene::load_scene_text(R"(cordis: 1
+space: 1
+step: {gesture_rate_hz: 100, integrator: leapfrog}
+accuracy: {tolerance: 0.001, band_hz: 16, over_s: 0.1}
+liaisons:
+  holder: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}
+  thickening: {dissipation: '0.3 * time_s * speed_m_per_s', rest_m: 0}
+matter:
+  ground: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+links:
+  - {liaison: holder, between: [ground, bob]}
+  - {liaison: thickening, between: [ground, bob]}
+)",
+                                              "t", problems);
+  const auto selection = select_rate(scene, problems);
+  const std::string promise = problems.text();
+  EXPECT_NE(promise.find("positions are not promised"), std::string::npos) << promise;
+  config::Problems of_check;
+  check_stability(scene, false, of_check);
+  const std::string check = of_check.text();
+  const std::string sentence = "it is not certain that the scene is stable: thickening";
+  const std::size_t begin = check.find(sentence);
+  ASSERT_NE(begin, std::string::npos) << check;
+  const std::string whole = check.substr(begin, check.find('\n', begin) - begin);
+  EXPECT_NE(whole.find("'time_s' (t:7)"), std::string::npos) << whole;
+  EXPECT_NE(promise.find(whole), std::string::npos) << promise << check;
+  EXPECT_EQ(promise.substr(0, promise.find(' ')), check.substr(0, check.find(' '))) << "one place";
+  ASSERT_TRUE(selection);
+  EXPECT_NE(selection->uncertainty.find(whole), std::string::npos) << "so the report has it";
 }
 
 }  // namespace
