@@ -96,9 +96,10 @@ std::string unstable_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   const double certain =
       check.plan.certain_step > 0.0 ? check.plan.certain_step : stability.certified.step;
-  if (const double rate = check.rate_above(1.0 / certain); rate <= scene::kHighestStepRate)
+  if (const double rate = sim::rate_above(check.scene, 1.0 / certain);
+      rate <= scene::kHighestStepRate)
     return fmt::format("stability   UNSTABLE: take a rate_hz of {:.0f} or more\n", rate);
-  const double uncertain = check.rate_above(1.0 / stability.diverging_step);
+  const double uncertain = sim::rate_above(check.scene, 1.0 / stability.diverging_step);
   if (stability.uncertainty && uncertain <= scene::kHighestStepRate)
     return fmt::format(
         "stability   UNSTABLE: take a rate_hz of {:.0f} or more, none of which is certain\n",
@@ -123,14 +124,15 @@ std::string stability_text(const SceneCheck& check) {
         "stability   not certain: {};\n            energy and K' + 2 Z' are watched during "
         "the run{}\n",
         sim::uncertainty_text(check.scene, *stability.uncertainty),
-        is_any_certain && check.rate_above(1.0 / certain) <= scene::kHighestStepRate
-            ? fmt::format("; a rate_hz of {:.0f} is certain", check.rate_above(1.0 / certain))
+        is_any_certain && sim::rate_above(check.scene, 1.0 / certain) <= scene::kHighestStepRate
+            ? fmt::format("; a rate_hz of {:.0f} is certain",
+                          sim::rate_above(check.scene, 1.0 / certain))
             : "");
   } else {
     text = fmt::format(
         "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
         "stable in all{}\n",
-        check.rate_above(1.0 / stability.certified.step),
+        sim::rate_above(check.scene, 1.0 / stability.certified.step),
         stability.turning.liaison ? " in which no link turns about" : "");
   }
   text += fmt::format("            step {}", seconds(stability.step));

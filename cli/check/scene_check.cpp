@@ -75,10 +75,6 @@ const config::LaunchNode& sim_node_of(const config::Launch& launch,
 
 }  // namespace
 
-double SceneCheck::rate_above(double rate_hz) const noexcept {
-  return (std::floor(rate_hz / scene.gesture_rate_hz) + 1.0) * scene.gesture_rate_hz;
-}
-
 double SceneCheck::real_time_rate() const noexcept {
   return std::floor(1e9 / step_nsec / scene.gesture_rate_hz) * scene.gesture_rate_hz;
 }

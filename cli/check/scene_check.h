@@ -74,8 +74,6 @@ struct SceneCheck {
   bool keeps_accuracy() const noexcept {
     return !choice || scene.step_rate_hz >= choice->needed_hz;
   }
-  /// The lowest rate above `rate` that is a multiple of the gesture rate.
-  double rate_above(double rate_hz) const noexcept;
 };
 
 /// Judges a scene, or the scene of a launch file at its devices, as `cordis run` does.

@@ -43,8 +43,7 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
     if (step == 0.0)
       return "no rate_hz is certain: " + uncertainty_text(scene, *stability.uncertainty);
   }
-  const double per_tick = scene.gesture_rate_hz;
-  const double rate = (std::floor(1.0 / (step * per_tick)) + 1.0) * per_tick;
+  const double rate = rate_above(scene, 1.0 / step);
   if (rate > scene::kHighestStepRate)
     return "no rate_hz is high enough: take less stiffness or more mass";
   return "a rate_hz of " + std::to_string(std::lround(rate)) +
@@ -53,6 +52,10 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
 }
 
 }  // namespace
+
+double rate_above(const scene::Scene& scene, double rate_hz) noexcept {
+  return (std::floor(rate_hz / scene.gesture_rate_hz) + 1.0) * scene.gesture_rate_hz;
+}
 
 std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty) {
   std::string text = scene::call_liaison(scene, uncertainty.liaison).name + ": " + uncertainty.why;

@@ -19,6 +19,9 @@ plan::Stability check_stability(const scene::Scene& scene, bool force, config::P
 void check_stability(const scene::Scene& scene, const plan::Stability& stability, bool force,
                      config::Problems& problems);
 
+/// The lowest rate above `rate_hz` that is a multiple of the gesture rate of the scene [1/s].
+double rate_above(const scene::Scene& scene, double rate_hz) noexcept;
+
 /// What keeps a scene from being certain, as a sentence: the liaison and the reason, and what its law asks for
 /// that nothing bounds, with the place in the file.
 std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty);

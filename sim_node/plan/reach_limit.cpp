@@ -24,6 +24,22 @@ bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) 
   return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
 }
 
+/// The largest factor of an energy, at least 1 and to `finest` of it, up to which `holds` is true. The last factor
+/// for which it was true is the one found.
+template <class Holds>
+double largest_factor(const Holds& holds, double finest) {
+  constexpr double kStep = 4.0;
+  constexpr double kLargest = 1e6;
+  double low = 1.0;
+  while (low < kLargest && holds(kStep * low)) low *= kStep;
+  double high = low < kLargest ? kStep * low : low;
+  while (high > finest * low) {
+    const double middle = std::sqrt(low * high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 /// The energy up to which a state was followed within its reach [J].
 double energy_followed(const engine::LinkState& state, double rest_length, bool turns,
                        const Reach& reach) {
@@ -108,22 +124,17 @@ class PairEnergies {
 
  private:
   void raise(const std::vector<std::size_t>& group) {
-    constexpr double kStep = 4.0;
     constexpr double kFinest = 1.05;
-    constexpr double kLargest = 1e6;
     const std::vector<PairLimit> before = limits_;
-    const auto holds = [&](double factor) {
+    const auto raise_by = [&](double factor) {
       for (const std::size_t k : group) set_energy(k, factor * before[k].energy);
-      return is_certified(network_, graph_);
     };
-    double low = 1.0;
-    while (low < kLargest && holds(kStep * low)) low *= kStep;
-    double high = kStep * low;
-    while (high > kFinest * low) {
-      const double middle = std::sqrt(low * high);
-      (holds(middle) ? low : high) = middle;
-    }
-    for (const std::size_t k : group) set_energy(k, low * before[k].energy);
+    raise_by(largest_factor(
+        [&](double factor) {
+          raise_by(factor);
+          return is_certified(network_, graph_);
+        },
+        kFinest));
   }
 
   void set_energy(std::size_t k, double energy) {
@@ -211,9 +222,7 @@ Motion motion_of(const engine::World& world, const std::vector<std::uint32_t>& m
 }  // namespace
 
 ReachLimit reach_limit(const NetworkDescription& network) {
-  constexpr double kStep = 4.0;
   constexpr double kFinest = 1.1;
-  constexpr double kLargest = 1e6;
   LiaisonGraph graph = liaison_graph(network);
   if (graph.bounded) return {};
   if (!is_certified(network, graph)) return {};
@@ -223,13 +232,7 @@ ReachLimit reach_limit(const NetworkDescription& network) {
     graph = std::move(wider);
     return true;
   };
-  double low = 1.0;
-  while (low < kLargest && holds(kStep * low)) low *= kStep;
-  double high = low < kLargest ? kStep * low : low;
-  while (high > kFinest * low) {
-    const double middle = std::sqrt(low * high);
-    (holds(middle) ? low : high) = middle;
-  }
+  largest_factor(holds, kFinest);
   return limit_of(network, graph);
 }
 
