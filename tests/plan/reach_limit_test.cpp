@@ -102,6 +102,56 @@ double longest_certain_step(const NetworkDescription& scene) {
   return plan::certain_step_of(scene, graph, plan::stability_of(scene, graph));
 }
 
+/// The three balls, the last of them one that a hand leads, or that is driven at this speed [m/s].
+NetworkDescription balls_at_a_port(double driven_at) {
+  NetworkDescription scene = balls_at_rest();
+  scene.mats[2].kind = engine::MatKind::kPort;
+  scene.mats[2].mass = 0.0;
+  if (driven_at == 0.0) return scene;
+  engine::TimeFunction plunge;
+  plunge.time = {0.0, 1.0, 2.0};
+  plunge.value = {Vec3::Zero(), Vec3(-driven_at, 0, 0), Vec3::Zero()};
+  scene.time_functions = {plunge};
+  engine::Drive drive;
+  drive.mat = 2;
+  drive.origin = scene.mats[2].position;
+  scene.drives = {drive};
+  return scene;
+}
+
+/// What a port meets cannot push it back: a ball of 0.1 kg meets it with m v^2 / 2.
+TEST(ReachLimit, OfASetCountsTheSpeedOfItsPorts) {
+  const auto stiffness_of = [](const NetworkDescription& scene) {
+    return plan::liaison_graph(scene).contacts.at(0).stiffness;
+  };
+  EXPECT_NEAR(stiffness_of(balls_at_rest()), slope_at(kDepth), 1e-9 * slope_at(kDepth));
+  const double of_hand = slope_at(0.05);
+  EXPECT_NEAR(stiffness_of(balls_at_a_port(0.0)), of_hand, 1e-9 * of_hand) << "a hand of 1 m/s";
+  const double of_plunge = slope_at(1.25);
+  EXPECT_NEAR(stiffness_of(balls_at_a_port(5.0)), of_plunge, 0.01 * of_plunge);
+
+  NetworkDescription moving = balls_at_a_port(5.0);
+  moving.mats[0].velocity = Vec3(3, 0, 0);  // 0.9 J, that of two such balls: 3 sqrt(2) m/s of one
+  const double of_both = slope_at(0.05 * std::pow(5.0 + 3.0 * std::sqrt(2.0), 2.0));
+  EXPECT_NEAR(stiffness_of(moving), of_both, 0.01 * of_both);
+}
+
+/// The hand may come as fast as the step is certified for; faster, it is beyond the reach.
+TEST(ReachLimit, OfASetHoldsAPortAgainstTheSpeedThatItsStepIsCertifiedFor) {
+  NetworkDescription scene = balls_at_a_port(0.0);
+  scene.step = 0.7 * longest_certain_step(scene);
+  const ReachLimit limit = plan::reach_limit(scene);
+  ASSERT_FALSE(limit.is_infinite());
+  EXPECT_GE(limit.speed, 1.0);
+  EXPECT_LT(limit.speed, 4.0);
+  World world = make_world(scene);
+  for (const double speed : {0.99 * limit.speed, 5.0}) {
+    world.impose_position(2, world.position(2) - Vec3(speed * scene.step, 0, 0));
+    world.step();
+    EXPECT_EQ(is_beyond(limit, world, {}), speed > limit.speed);
+  }
+}
+
 /// What has no energy at the start gets some by falling into wells: the limit is that of the step.
 TEST(ReachLimit, OfASetAtRestIsThatOfItsStep) {
   NetworkDescription scene = balls_at_rest();

@@ -154,6 +154,14 @@ double energy_at(const Reach& reach) {
   return kSpare * (reach.brought + meeting);
 }
 
+double approach_energy(const Reach& reach) noexcept {
+  if (!reach.held) return reach.energy;
+  // sqrt(m / 2) (v + w): the mass at w has the energy, and the port goes at v.
+  const double root = std::sqrt(0.5 * std::max(reach.mass_a.high, reach.mass_b.high));
+  const double both = std::sqrt(std::max(reach.energy, 0.0)) + root * reach.speed;
+  return both * both;
+}
+
 double work_of_forces(const Reach& reach, double way) noexcept {
   return 2.0 * reach.force * way;
 }

@@ -16,7 +16,7 @@ namespace cordis::plan {
 struct Reach {
   double elongation = 0.0;  ///< elongation of a link, either way [m]
   double speed = 0.0;       ///< speed of MATs [m/s]
-  double energy = 0.0;      ///< energy with which two MATs approach each other [J]
+  double energy = 0.0;      ///< energy with which two MATs approach each other, ports apart [J]
   /// Kinetic and stored at the start, by falling, by laws whose potential falls, and by `pushed` [J].
   double brought = 0.0;
   double pushed = 0.0;   ///< by driven forces through the scene [J]

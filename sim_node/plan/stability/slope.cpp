@@ -164,7 +164,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   if (elastic != nullptr || viscous != nullptr || is_power) {
     stretch = stretch_within(state, rest_length, turns, reach);
   }
-  engine::LawRange spring{reach.elongation, rest_length, reach.energy};
+  engine::LawRange spring{reach.elongation, rest_length, approach_energy(reach)};
   if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity))
     spring.energy += work_of_forces(reach, balls->diameter);  // on the way from the well inwards
   spring.turns = turns;
