@@ -112,6 +112,16 @@ TEST(Law, IsTheSlopeOfItsPotential) {
   });
 }
 
+/// A mass that passes over many hills has no more energy far away than near.
+TEST(Law, OfManyWavesStoresTheIntegralOfItsTension) {
+  const Law waves = engine::Expression{
+      (Term(3.0) * one(Operation::kSin, Term(200.0) * q(Quantity::kElongation))).program};
+  for (const double e : {0.01, 0.2, 1.0, 7.1, -7.1}) {
+    const double exact = 3.0 / 200.0 * (1.0 - std::cos(200.0 * e));
+    EXPECT_NEAR(potential(waves, {e + 0.3, e}), exact, 1e-8) << e;
+  }
+}
+
 TEST(Law, IsNowhereSteeperThanItsLargestSlope) {
   with_random_laws([](const Law& law, std::mt19937& random) {
     LawRange range{between(random, 0.1, 0.5), between(random, 0.5, 1.0), between(random, 0.0, 9.0)};

@@ -44,7 +44,7 @@ class Quadrature {
   }
 
  private:
-  static constexpr int kMaxPanels = 64;
+  static constexpr int kMaxPanels = 1024;  // enough for some 250 waves
   static constexpr std::size_t kMaxDepth = 32;
   static constexpr double kTolerance = 1e-10;
 
