@@ -127,6 +127,26 @@ TEST(EntryOfAPower, IsNotCertainWhereEveryRoundBringsInMore) {
   EXPECT_TRUE(may_begin_steep(scene));
 }
 
+/// In a plane what pulls at distance 0 turns there without a limit: so does a spring of a negative rest length.
+TEST(EntryWithAnotherRest, IsNotCertainWhereItMayBeNegativeAndTheStateHolds) {
+  const auto is_certain = [](const Term& rest, bool ends) {
+    Behaving law;
+    law.state(50.0).exit_to_rest(kOld > 0.1, 1, rest).state(50.0);
+    if (ends) law.exit_to_rest(kStretched < -0.01, 1, rest);
+    NetworkDescription scene = thrown(law.state_machine);
+    scene.dimension = 2;
+    const plan::Stability stability = promised(scene);
+    EXPECT_EQ(stability.holds(), !stability.uncertainty);
+    return stability.holds();
+  };
+  EXPECT_FALSE(is_certain(Term(-0.05), false));
+  EXPECT_TRUE(is_certain(Term(0.05), false));
+  EXPECT_TRUE(is_certain(q(Quantity::kRestLength) + Term(0.01), false));
+  EXPECT_FALSE(is_certain(q(Quantity::kRestLength) - Term(0.01), false));
+  EXPECT_FALSE(is_certain(q(Quantity::kDistance) - Term(0.01), false));
+  EXPECT_TRUE(is_certain(q(Quantity::kDistance) - Term(0.01), true)) << "it yields before";
+}
+
 TEST(EntryOfAPower, OfAContactIsCertainAsThatOfOneWithoutStates) {
   LinkState pushing;
   pushing.elasticity = engine::Power{1e4, 1.5};

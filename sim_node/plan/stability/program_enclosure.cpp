@@ -130,7 +130,7 @@ class Evaluation {
       case Quantity::kDistance:
         return {box_.distance, {one, {}}};
       case Quantity::kElongation:
-        if (box_.rest_moves) return kUnknown;
+        if (box_.rest_moves) return {box_.distance - box_.moved_rest, kUnknown.slope};
         return {box_.distance - Interval{box_.rest_length, box_.rest_length}, {one, {}}};
       case Quantity::kSpeed:
         return {box_.speed, {Interval{}, one}};
@@ -145,7 +145,7 @@ class Evaluation {
       case Quantity::kSlid:
         return {box_.remembered};
       case Quantity::kRestLength:
-        if (box_.rest_moves) return kUnknown;
+        if (box_.rest_moves) return {box_.moved_rest, kUnknown.slope};
         return {{box_.rest_length, box_.rest_length}};
       default:
         return kUnknown;

@@ -28,8 +28,10 @@ struct LinkBox {
   Interval remembered = kAnyNumber;  ///< age [s], impulse [N s] and stretch of friction [m]
   /// What each variable of the network lies within; null: any number.
   const std::vector<Interval>* variables = nullptr;
-  bool rest_moves = false;  ///< nothing is known of the rest length, nor of the elongation
-  int bisections = 2000;    ///< at most, for the largest slope; > 0
+  /// Nothing is known of the rest length, nor of the elongation, but for moved_rest.
+  bool rest_moves = false;
+  Interval moved_rest = kAnyNumber;  ///< what the rest length lies within where it moves [m]
+  int bisections = 2000;             ///< at most, for the largest slope; > 0
 };
 
 /// No tangent of the program in a box is above these: over the distance, and over the speed.

@@ -277,6 +277,18 @@ double stored_in(const engine::LinkState& state, const engine::LawPoint& point) 
   return 0.5 * state.stiffness * e * e + std::max(in_law, 0.0);
 }
 
+/// True if a change of state may make a rest length negative where all were 0 or more before.
+bool may_make_rest_negative(const engine::StateMachine& state_machine, const Reach& reach) {
+  constexpr double kFar = 1e9;  // [m], [m/s]
+  LinkBox box{{0.0, kFar}, {-kFar, kFar}, 0.0, reach.mass_a, reach.mass_b};
+  box.rest_moves = true;
+  box.moved_rest = {0.0, kFar};
+  box.variables = reach.variables.get();
+  return std::ranges::any_of(state_machine.exits, [&](const engine::Transition& exit) {
+    return exit.rest == engine::RestRule::kExpression && values_of(exit.rest_length, box).low < 0.0;
+  });
+}
+
 double stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point) {
   return stored_in(state_machine.states[state_machine.start], point);
 }
@@ -309,6 +321,8 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
                     const Reach& reach) {
   Slope largest;
   const std::vector<Entry> entries = entries_of(state_machine, rest_length, reach);
+  const bool may_be_negative = dimension > 1 && may_make_rest_negative(state_machine, reach);
+  const double scale = std::max({reach.elongation, std::abs(rest_length), 1e-6});
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const engine::LinkState& state = state_machine.states[s];
     // A power is flat at its rest: what it has where it is entered is energy, as what it is struck with.
@@ -322,6 +336,9 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     Slope slope = slope_of(state, rest_length, dimension > 1, here);
     if (!slope.bounded && is_entered && slope.uncertainty == nullptr)
       slope.uncertainty = kBeginsAnywhere;
+    if (may_be_negative && entry.by_a_change && slope.uncertainty == nullptr &&
+        pulls_where_ends_meet(state, -scale, slope.stiffness, reach))
+      slope.uncertainty = kPullsWhereEndsMeet;
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
