@@ -20,6 +20,16 @@ using config::MappingReader;
 using config::Value;
 using engine::MatKind;
 
+/// True if a field has a value at 0 s; a problem where it has none. That of one that asks for variables is known in a run.
+bool has_start(MappingReader& reader, const char* key, const AxisFormulas& formulas) {
+  const engine::TimeFunction field{formulas, {}, {}, false};
+  if (asks_for_variable(field)) return true;
+  const engine::Vec3 start = value_at(field, 0.0);
+  if (start.allFinite() && start.cwiseAbs().maxCoeff() <= kFarthest) return true;
+  reader.error_at(key, reader.name_of(key) + " is no finite number within 1e6 at 0 s");
+  return false;
+}
+
 /// A vector that must have a value at 0 s. Nothing after a problem.
 std::optional<AxisFormulas> read_field(MappingReader& reader, const char* key, int space,
                                        const ParameterValues& parameters, AskedOutside& outside,
@@ -28,14 +38,8 @@ std::optional<AxisFormulas> read_field(MappingReader& reader, const char* key, i
   const Value value = reader.optional_value(key);
   AxisFormulas formulas = read_axis_formulas(value, reader.name_of(key), space, kNamesOfTime,
                                              parameters, "", problems, &outside);
-  if (problems.error_count() != errors_before) return std::nullopt;
-  const engine::TimeFunction field{formulas, {}, {}, false};
-  if (asks_for_variable(field)) return formulas;  // its value at the start is that of a run
-  const engine::Vec3 start = value_at(field, 0.0);
-  if (!start.allFinite() || start.cwiseAbs().maxCoeff() > kFarthest) {
-    reader.error_at(key, reader.name_of(key) + " is no finite number within 1e6 at 0 s");
+  if (problems.error_count() != errors_before || !has_start(reader, key, formulas))
     return std::nullopt;
-  }
   return formulas;
 }
 
@@ -74,6 +78,7 @@ void read_viscosity(MappingReader& reader, const ParameterValues& parameters, As
     scene.network.medium_viscosity = config::read_number(as_written, what, 0.0, range, problems);
     return;
   }
+  if (!has_start(reader, kViscosity, {program})) return;
   fields.viscosity = program;
   fields.viscosity_place = value.place();
   scene.medium_changes = true;
