@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -64,7 +65,7 @@ NetworkDescription under(const Term& x, const Term& y,
 
 plan::ForceSlopes slopes(const Term& x, const Term& y) {
   const NetworkDescription scene = under(x, y);
-  return plan::slopes_of_force(scene, scene.time_functions[0]);
+  return plan::SlopesOfForces(scene).of(scene.time_functions[0]);
 }
 
 TEST(ForceSlopes, OfAWellAreItsStiffness) {
@@ -101,7 +102,9 @@ TEST(ForceSlopes, WithoutABoundAreNamed) {
   EXPECT_EQ(uncertainty((Term(0.0) - rate(0)) * (Term(0.1) + seconds()), Term(0.0)),
             "it asks for time_s, which nothing bounds");
   EXPECT_EQ(uncertainty((Term(0.0) - rate(0)) * asked(0), Term(0.0)),
-            "it asks for a position, which nothing bounds");
+            "it asks for a signal or a quantity, which nothing bounds");
+  EXPECT_EQ(uncertainty((Term(0.0) - rate(0)) * (asked(1) + seconds()), Term(0.0)),
+            "it asks for time_s and a signal or a quantity, which nothing bounds");
   EXPECT_EQ(uncertainty(Term(0.0) - coordinate(1), coordinate(0)),
             "it does work on closed ways, and nothing bounds the energy of that");
   EXPECT_EQ(uncertainty(Term(3.0) * coordinate(0), Term(0.0)),
@@ -109,7 +112,63 @@ TEST(ForceSlopes, WithoutABoundAreNamed) {
   EXPECT_EQ(uncertainty(Term(0.2) * rate(0), Term(0.0)),
             "it may drive what moves, and nothing bounds the energy of that");
   EXPECT_EQ(uncertainty(Term(-9.0) * asked(0), Term(0.0)),
-            "it asks for a position, and nothing bounds what that brings in");
+            "it asks for what masses move, and nothing bounds what that brings in");
+}
+
+TEST(ForceSlopes, NameTheVariablesThatNothingBounds) {
+  using Numbers = std::vector<std::uint32_t>;
+  const auto variables = [](const Term& x, const Term& y) { return slopes(x, y).variables; };
+  const Term clamped = two(Operation::kMin, two(Operation::kMax, asked(0), Term(0.0)), Term(1.0));
+  EXPECT_EQ(variables((Term(0.0) - rate(0)) * asked(1), Term(0.0)), (Numbers{1}));
+  EXPECT_EQ(variables((Term(0.0) - rate(0)) * clamped, (Term(0.0) - rate(1)) * asked(1)),
+            (Numbers{1}))
+      << "the other one is clamped";
+  EXPECT_EQ(variables((Term(0.0) - rate(0)) * asked(1) * asked(0), Term(0.0)), (Numbers{1, 0}));
+  EXPECT_EQ(variables(Term(-9.0) * asked(1) - asked(0), Term(0.0)), (Numbers{0}))
+      << "the state of time moves with no mass";
+  EXPECT_EQ(variables((Term(0.0) - rate(0)) * seconds(), Term(0.0)), (Numbers{}));
+
+  NetworkDescription scene = under((Term(0.0) - rate(0)) * asked(1), Term(0.0));
+  const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+  ASSERT_TRUE(stability.uncertainty);
+  EXPECT_EQ(stability.uncertainty->variables, (Numbers{1}));
+}
+
+/// What is found once for equal formulas is that of the formula and of what its own variables lie within.
+TEST(ForceSlopes, OfFunctionsThatAreNearlyAlikeAreTheirOwn) {
+  NetworkDescription scene = under(Term(-5.0) * coordinate(0), Term(-3.0) * coordinate(1));
+  scene.mats.push_back(fixed(Vec3(2, 0, 0)));
+  scene.mats.push_back(fixed(Vec3(7, 0, 0)));
+  for (const std::uint32_t mat : {1U, 2U, 0U}) {
+    scene.variables.push_back(scene.variables[0]);
+    scene.variables.back().index = mat;
+  }
+  const auto add = [&scene](const Term& x, const Term& y) {
+    TimeFunction function;
+    function.formula = {x.program, y.program, {}};
+    scene.time_functions.push_back(function);
+  };
+  add(Term(-5.0) * coordinate(0), Term(-4.0) * coordinate(1));
+  add(Term(-6.0) * coordinate(0), Term(-3.0) * coordinate(1));
+  add(Term(-6.0) * coordinate(1), Term(-3.0) * coordinate(0));
+  add((Term(0.0) - asked(2)) * coordinate(0), Term(0.0));
+  add((Term(0.0) - asked(3)) * coordinate(0), Term(0.0));
+  add((Term(0.0) - asked(4)) * coordinate(0), Term(0.0));
+  add((Term(0.0) - asked(0)) * coordinate(0), Term(0.0));
+  add((Term(0.0) - asked(3)) * coordinate(0), Term(0.0));
+  plan::SlopesOfForces together(scene);
+  std::vector<double> stiffness;
+  for (const TimeFunction& function : scene.time_functions) {
+    const plan::ForceSlopes found = together.of(function);
+    const plan::ForceSlopes alone = plan::SlopesOfForces(scene).of(function);
+    EXPECT_EQ(found.stiffness, alone.stiffness);
+    EXPECT_EQ(found.variables, alone.variables);
+    EXPECT_EQ(found.uncertainty, alone.uncertainty);
+    stiffness.push_back(found.stiffness);
+  }
+  EXPECT_EQ(stiffness, (std::vector<double>{5, 5, 6, 6, 2, 7, 0, 0, 7}));
+  EXPECT_EQ(together.of(scene.time_functions[6]).variables, std::vector<std::uint32_t>{4});
+  EXPECT_EQ(together.of(scene.time_functions[7]).variables, std::vector<std::uint32_t>{0});
 }
 
 TEST(ForceSlopes, OfWhatIsBoundedAreCertain) {
@@ -127,7 +186,7 @@ TEST(ForceSlopes, OfWhatIsBoundedAreCertain) {
   NetworkDescription led = under(Term(-9.0) * asked(0), Term(0.0));
   led.mats.push_back(port(Vec3(1, 0, 0)));
   led.variables[0].index = 1;  // what is led from outside
-  EXPECT_EQ(plan::slopes_of_force(led, led.time_functions[0]).uncertainty, "");
+  EXPECT_EQ(plan::SlopesOfForces(led).of(led.time_functions[0]).uncertainty, "");
 }
 
 TEST(ForceSlopes, LimitTheStepAsASpringToTheGround) {

@@ -372,15 +372,16 @@ bool may_pass_a_surface(const NetworkDescription& network) {
 /// Adds the driven forces that depend on more than time. Precondition: all else is in the graph.
 void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
   std::vector<std::optional<ForceSlopes>> known(network.time_functions.size());
+  SlopesOfForces slopes_of_forces(network);
   const bool may_pass = !network.drives.empty() && may_pass_a_surface(network);
   for (std::uint32_t d = 0; d < network.drives.size(); ++d) {
     const engine::Drive& drive = network.drives[d];
     if (!drive.is_force || is_of_time(network.time_functions[drive.function])) continue;
     std::optional<ForceSlopes>& slopes = known[drive.function];
-    if (!slopes) slopes = slopes_of_force(network, network.time_functions[drive.function]);
+    if (!slopes) slopes = slopes_of_forces.of(network.time_functions[drive.function]);
     const LiaisonId liaison{LiaisonKind::kForce, d};
     if (!graph.uncertainty && !slopes->uncertainty.empty())
-      graph.uncertainty = {liaison, slopes->uncertainty};
+      graph.uncertainty = {liaison, slopes->uncertainty, slopes->variables};
     graph.fed_by_forces = graph.fed_by_forces || slopes->brings_energy;
     if (!graph.uncertainty && !graph.bounded && slopes->brings_energy)
       graph.uncertainty = {liaison, kBringsEnergy};

@@ -99,6 +99,7 @@ class Evaluation {
 
   Enclosed enclose(const engine::Program& program) {
     std::vector<Enclosed> stack;
+    stack.reserve(engine::kMaxStack);
     for (const Instruction& instruction : program.code) {
       const std::size_t taken = engine::operand_count(instruction.operation);
       const Enclosed result = apply(instruction, stack.data() + (stack.size() - taken));
