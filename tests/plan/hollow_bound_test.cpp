@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -181,6 +182,96 @@ TEST(HollowBound, IsNotCertainWhereABallIsWiderThanItsCylinder) {
   EXPECT_EQ(why(0.39), "");
   EXPECT_NE(why(0.41).find("acts on the axis of a hollow cylinder"), std::string::npos)
       << why(0.41);
+}
+
+/// A contact that comes and goes by conditions: nothing, and a spring that also pulls while it has not ended.
+StateMachine touching(double stiffness, const Term& begins, const Term& ends) {
+  return Behaving().state(0.0).exit(begins, 1).state(stiffness).exit(ends, 0).state_machine;
+}
+
+std::string why_uncertain(StateMachine machine, double rest, std::vector<double> radii = {0.05}) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    scene.mats.push_back(mass(0.2, Vec3(0.0, 0.02 * static_cast<double>(i), 0.0)));
+  scene.radius = std::move(radii);
+  const auto surfaces = add_hollow(scene, cylinder(Vec3::UnitZ(), 0.4), Vec3::Zero());
+  const auto count = static_cast<std::uint32_t>(scene.mats.size() - surfaces.size());
+  touch(scene, count, std::move(machine), 0.2, rest, surfaces);
+  const plan::Plan plan = plan::plan_of(scene, 0.1);
+  return plan.stability.uncertainty ? plan.stability.uncertainty->why : "";
+}
+
+TEST(HollowBound, OfAContactOfTwoStatesIsCertainWhereItsExitSurelyEndsItBeforeTheAxis) {
+  const Term e = q(Quantity::kElongation);
+  const Term d = q(Quantity::kDistance);
+  EXPECT_EQ(why_uncertain(touching(2000.0, e < 0.0, e >= 0.0), -1.0), "");
+  EXPECT_EQ(why_uncertain(touching(2000.0, e<-0.001, e> 0.01), -1.0), "") << "sticky";
+  EXPECT_EQ(why_uncertain(touching(2000.0, e<0.0, d> 0.06), -1.0), "");
+  EXPECT_EQ(why_uncertain(touching(2000.0, e < 0.0, e >= 0.0), -1.0, {0.05, 0.03}), "");
+  EXPECT_EQ(why_uncertain(touching(2000.0, both(e<0.0, q(Quantity::kAge)> 0.1), e >= 0.0), -1.0),
+            "");
+  const std::string on_axis = "it acts on the axis of a hollow cylinder, where the normal flips";
+  struct Case {
+    const char* name;
+    Term begins;
+    Term ends;
+  };
+  for (const Case& bad : {
+           Case{"never ends", e<0.0, e> 9.0},
+           Case{"may last", e < 0.0, both(e >= 0.0, q(Quantity::kAge) > 0.1)},
+           Case{"ends by its force", e<0.0, q(Quantity::kForce)> 0.0},
+           Case{"begins anywhere", q(Quantity::kAge) > 0.5, e >= 0.0},
+           Case{"begins on the axis", e < 0.4, e >= 0.0},
+           Case{"ends with a rising", e < 0.0, one(Operation::kRising, e)},
+       }) {
+    EXPECT_EQ(why_uncertain(touching(2000.0, bad.begins, bad.ends), -1.0), on_axis) << bad.name;
+  }
+  EXPECT_EQ(why_uncertain(touching(2000.0, e<0.0, d> 0.06), -1.0, {0.05, 0.03}), on_axis)
+      << "a distance says nothing of rest lengths that differ";
+  StateMachine moves = touching(2000.0, e < 0.0, e >= 0.0);
+  moves.exits[1].rest = RestRule::kHere;
+  EXPECT_NE(why_uncertain(moves, -1.0), "");
+  StateMachine from_a_third = touching(2000.0, e < 0.0, e >= 0.0);
+  from_a_third.states.push_back(from_a_third.states[0]);
+  from_a_third.states[2].first_exit = from_a_third.states[2].last_exit = 2;
+  EXPECT_EQ(why_uncertain(from_a_third, -1.0), "");
+  from_a_third.exits.push_back(from_a_third.exits[0]);
+  from_a_third.exits[2].when = (q(Quantity::kAge) > 1.0).program;
+  from_a_third.states[2].last_exit = 3;
+  EXPECT_EQ(why_uncertain(from_a_third, -1.0), on_axis) << "entered on the axis by a third state";
+}
+
+/// What pulls on the way in has the stiffness of what pushes there, and the step that a floor has.
+TEST(HollowBound, OfAContactOfTwoStatesIsThatOfAFloorAndHoldsItsEnergy) {
+  constexpr double kStiffness = 2000.0;
+  const Term e = q(Quantity::kElongation);
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Chance chance(seed);
+    NetworkDescription scene;
+    scene.dimension = 2;
+    scene.step = 1e-4;
+    const double angle = chance(0.0, 6.28);
+    scene.mats = {mass(0.2, chance.place(0.2, 2), Vec3(std::cos(angle), std::sin(angle), 0.0))};
+    scene.radius = {0.05};
+    const auto surfaces = add_hollow(scene, cylinder(Vec3::UnitZ(), 0.4), Vec3::Zero());
+    touch(scene, 1, touching(kStiffness, e < 0.0, e >= 0.0), 0.05, -1.0, surfaces);
+    const double limit = 2.0 * std::sqrt(0.2 / kStiffness);
+    ASSERT_NEAR(plan::certified_bound(scene, plan::liaison_graph(scene)).step, limit, 1e-9);
+    ASSERT_FALSE(plan::plan_of(scene, 0.1).stability.uncertainty.has_value());
+    scene.step = 0.1 * limit;  // K' = 0.04: no contact gains more than 1 %
+    World world = make_world(scene);
+    int hits = 0;
+    for (int n = 0; n < 4000; ++n) {
+      world.step();
+      hits += static_cast<int>(world.events().size());
+      ASSERT_LT(world.position(0).norm(), 0.4) << n;
+    }
+    EXPECT_GT(hits, 4);
+    EXPECT_LT(world.energy().kinetic, 0.1 * 1.3);
+  }
 }
 
 TEST(HollowBound, TellsOfABallThatComesThroughTheWallAsOfAPlane) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <variant>
 
 #include "sim_node/plan/stability/program_enclosure.h"
@@ -32,7 +33,56 @@ Interval force_near(const engine::LinkState& state, double rest_length, bool res
   return {force.low - spare(force.low), force.high + spare(force.high)};
 }
 
+/// What the truth of a condition lies within at these elongations, at any speed, force and age.
+Interval truth_at(const engine::Program& condition, const Interval& elongation, double rest_length,
+                  const Reach& reach) {
+  constexpr double kUnbounded = 1e9;  // [m/s]
+  const auto asks = [&](engine::Quantity quantity) { return asks_for(condition, quantity); };
+  if (asks_for_variable(condition)) return {0.0, 1.0};
+  LinkBox box{{elongation.low + rest_length, elongation.high + rest_length},
+              {-kUnbounded, kUnbounded},
+              rest_length,
+              reach.mass_a,
+              reach.mass_b};
+  // The elongation is known even then; the distance and the rest length are not.
+  const bool asks_for_length =
+      asks(engine::Quantity::kDistance) || asks(engine::Quantity::kRestLength);
+  box.rest_moves = reach.rests_differ && asks_for_length;
+  if (box.rest_moves) box.distance = {-kUnbounded, kUnbounded};
+  return values_of(condition, box);
+}
+
 }  // namespace
+
+double last_elongation_of(const engine::StateMachine& state_machine, std::size_t state,
+                          double highest, double rest_length, const Reach& reach) {
+  const auto truth = [&](const engine::Transition& exit, double lowest) {
+    return truth_at(exit.when, {lowest, highest}, rest_length, reach);
+  };
+  const auto is_left_alone = [&](double lowest) {
+    bool ends = false;
+    for (std::size_t from = 0; from < state_machine.states.size(); ++from) {
+      const engine::LinkState& in = state_machine.states[from];
+      for (std::uint32_t e = in.first_exit; e < in.last_exit; ++e) {
+        const engine::Transition& exit = state_machine.exits[e];
+        const Interval holds = truth(exit, lowest);
+        const bool surely_fails = holds.low == 0.0 && holds.high == 0.0;
+        const bool surely_holds = holds.low > 0.0 || holds.high < 0.0;
+        if (exit.target == state && !surely_fails) return false;
+        if (from == state && surely_holds) ends = true;
+      }
+    }
+    return ends;
+  };
+  constexpr int kHalvings = 60;
+  double acts = -std::abs(rest_length);
+  double ended = highest;
+  for (int n = 0; n < kHalvings; ++n) {
+    const double middle = 0.5 * (acts + ended);
+    (is_left_alone(middle) ? ended : acts) = middle;
+  }
+  return ended;
+}
 
 bool may_end_where_ends_meet(const engine::StateMachine& state_machine, std::size_t state,
                              double rest_length, const Reach& reach) {

@@ -1,4 +1,4 @@
-// sim_node/plan/stability/meeting_exit.h -- whether a state ends before its ends meet.
+// sim_node/plan/stability/meeting_exit.h -- where exits end a state.
 #pragma once
 
 #include <cstddef>
@@ -13,5 +13,13 @@ namespace cordis::plan {
 /// condition of the liaison asks for variables of other things, which may hold it anywhere.
 bool may_end_where_ends_meet(const engine::StateMachine& state_machine, std::size_t state,
                              double rest_length, const Reach& reach);
+
+/// The elongation from which on, up to `highest`, a state exerts no force, whatever the rest length. There an exit to
+/// another state surely holds in every step, before the force is found, and none that may hold leads to the state.
+/// `highest` where nothing is sure. O(exits), some dozen enclosures. Precondition: no exit moves the rest length.
+/// @param highest      the largest elongation that a pair can have [m]
+/// @param rest_length  any of a pair [m]
+double last_elongation_of(const engine::StateMachine& state_machine, std::size_t state,
+                          double highest, double rest_length, const Reach& reach);
 
 }  // namespace cordis::plan

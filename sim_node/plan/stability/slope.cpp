@@ -427,20 +427,27 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
   return slope;
 }
 
-/// The force is at most what it is at the end of its range and its largest slope from there on, so that its share
+/// The force is at most what it is where it ends and its largest slope from there on, so that its share
 /// of the radius is largest at the wall, or at that end.
 Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double radius,
                   double rest_length, const Reach& reach) {
   if (std::isinf(radius)) return slope;
   const bool rest_moves = moves_rest(state_machine);
   const double along = slope.stiffness;
+  // The distance from the wall from which on a state does not act [m].
+  const auto end_of = [&](std::size_t state) {
+    if (state == state_machine.start) return std::min(reach.range, radius);
+    if (rest_moves) return radius;
+    const double highest = reach.rests_differ ? radius : radius - rest_length;
+    const double last = last_elongation_of(state_machine, state, highest, rest_length, reach);
+    return last < highest ? std::min(rest_length + last, radius) : radius;
+  };
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const engine::LinkState& state = state_machine.states[s];
     if (!has_force(state)) continue;
-    const bool ends_at_range = s == state_machine.start && reach.range < radius;
-    const double end = ends_at_range ? reach.range : radius;
+    const double end = end_of(s);
     const Interval tension = tension_at(state, end, rest_length, reach);
-    if (!ends_at_range) {
+    if (!(end < radius)) {
       const bool acts = rest_moves || tension.low < 0.0 || tension.high > 0.0;
       if (acts && slope.uncertainty == nullptr) slope.uncertainty = kActsOnAxis;
       continue;
