@@ -1,6 +1,8 @@
 // node/dds/library_faults.cpp
 #include "node/dds/library_faults.h"
 
+#include <cstddef>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <fastdds/rtps/messages/RTPSMessageGroup.h>
+#include <fastdds/rtps/messages/RTPSMessageSenderInterface.hpp>
 #include <fastdds/rtps/writer/RTPSWriter.h>
 #include <fastdds/rtps/writer/StatefulWriter.h>
 
@@ -45,6 +49,7 @@ struct OfLibrary {
   bool (*remove_reader)(rtps::StatefulWriter*, const rtps::GUID_t&);
   void (*received_by_all)(DataWriterImpl::InnerDataWriterListener*, rtps::RTPSWriter*,
                           rtps::CacheChange_t*);
+  bool (*insert)(rtps::RTPSMessageGroup*, const rtps::GuidPrefix_t&, bool);
 };
 
 template <class Function>
@@ -65,10 +70,21 @@ const OfLibrary& of_library() noexcept {
         "_ZN8eprosima7fastdds3dds14DataWriterImpl23InnerDataWriterListener"
         "27onWriterChangeReceivedByAllEPNS_8fastrtps4rtps10RTPSWriterEPNS5_13CacheChange_tE",
         found.received_by_all);
+    find(
+        "_ZN8eprosima8fastrtps4rtps16RTPSMessageGroup17insert_submessageERKNS1_"
+        "12GuidPrefix_tEb",
+        found.insert);
     return found;
   }();
   return kFound;
 }
+
+// What a message gains when it is encrypted: a prefix, a header, a body, padding and a postfix with
+// a tag; for each receiver a tag more; and what Fast DDS appends for its statistics.
+constexpr std::size_t kEncryptionBytes = 68;
+constexpr std::size_t kBytesOfReceiver = 20;
+constexpr std::size_t kMoreReceivers = 10;  // that may come before it is sent
+constexpr std::size_t kStatisticsBytes = 60;
 
 /// True while this thread takes a receiver out of a writer.
 thread_local bool a_receiver_leaves = false;
@@ -82,6 +98,26 @@ bool SecurityManager::encode_rtps_message(const rtps::CDRMessage_t& message,
                                           rtps::CDRMessage_t& encrypted,
                                           const std::vector<rtps::GuidPrefix_t>& receivers) const {
   return receivers.empty() || of_library().encode(this, message, encrypted, receivers);
+}
+
+/// Adds a part to a message. Where it would not fit when encrypted, the message is sent first: Fast
+/// DDS 2.9.1 fills it up, then loses it or aborts.
+bool rtps::RTPSMessageGroup::insert_submessage(const GuidPrefix_t& receiver, bool is_big) {
+  const bool is_begun = full_msg_->length > RTPSMESSAGE_HEADER_SIZE;
+  if (is_begun && encrypt_msg_ != nullptr) {
+    std::size_t receivers = kMoreReceivers;
+    {
+      const std::lock_guard lock(*sender_);
+      receivers += sender_->remote_participants().size();
+    }
+    const std::size_t length = std::size_t{full_msg_->length} + submessage_msg_->length +
+                               kEncryptionBytes + kBytesOfReceiver * receivers + kStatisticsBytes;
+    if (length > full_msg_->max_size) {
+      flush_and_reset();
+      add_info_dst_in_buffer(full_msg_, receiver);
+    }
+  }
+  return of_library().insert(this, receiver, is_big);
 }
 
 bool rtps::StatefulWriter::matched_reader_remove(const GUID_t& reader) {
@@ -103,7 +139,7 @@ namespace cordis::dds {
 void take_out_library_faults() {
   const OfLibrary& found = of_library();
   if (found.encode == nullptr || found.remove_reader == nullptr ||
-      found.received_by_all == nullptr) {
+      found.received_by_all == nullptr || found.insert == nullptr) {
     throw std::runtime_error(
         "this library of Fast DDS lacks functions that Cordis checks: install libfastrtps2.9");
   }

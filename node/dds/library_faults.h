@@ -1,11 +1,12 @@
-// node/dds/library_faults.h -- two faults of Fast DDS 2.9.1 that this program takes out.
+// node/dds/library_faults.h -- three faults of Fast DDS 2.9.1 that this program takes out.
 #pragma once
 
 namespace cordis::dds {
 
-/// Sees to it that two faults of the library end no process. The program defines three functions
+/// Sees to it that three faults of the library end no process. The program defines four functions
 /// under names of the library, which calls them in place of its own:
-/// - a message with keys whose last receiver has just left is dropped, where the library aborts, and
+/// - a message with keys whose last receiver has just left is dropped, where the library aborts;
+/// - one that would be too long when encrypted is sent in two, where the library loses it or aborts;
 /// - what all have acknowledged stays when a receiver leaves, where the library may lock up: the
 ///   thread that sends holds the one lock and waits for the other, and the thread that removes the
 ///   other way round. It stays until newer messages take its place.

@@ -179,8 +179,10 @@ std::string keyless_text(const std::string& peer) {
 /// @param is_secured  the peer has keys
 std::string unproven_text(const std::string& peer, bool is_secured) {
   return "'" + peer + "' " +
-         (is_secured ? "and this process do not trust each other: their keys are of two keyrings; "
-                     : "has no keys, and this process has: they exchange nothing; ") +
+         (is_secured
+              ? "and this process do not trust each other yet: their keys are of two keyrings, "
+                "or the machine is too busy; "
+              : "has no keys, and this process has: they exchange nothing; ") +
          "give all parts of a session keys of one keyring";
 }
 

@@ -21,6 +21,7 @@
 
 #include "idl/control.h"
 #include "idl/gesture.h"
+#include "idl/inputs.h"
 #include "idl/scene.h"
 #include "idl/topics.h"
 #include "node/dds/arrival.h"
@@ -420,6 +421,32 @@ TEST_F(SecuredParticipant, OutlivesTheLastReceiverOfWhatItSends) {
       msg::SceneFrame frame;
       return read.take(frame);
     })) << life;
+  }
+}
+
+/// What waits for one that comes late is sent together, in messages as long as a datagram may be.
+/// Encryption makes them longer. The sizes end such messages at every length.
+TEST_F(SecuredParticipant, GetsAllThatWasWrittenBeforeItCame) {
+  constexpr std::uint64_t kKept = 256;  // by the writer of this topic
+  for (std::size_t size = 0; size < 24; size += 4) {
+    Participant sim(member("sim", Role::kSim));
+    Writer<msg::SceneInputs> inputs(sim, Topic::kInputs);
+    msg::SceneInputs written;
+    written.engine_version(std::string(300 + size, '1'));
+    for (std::uint64_t batch = 1; batch <= kKept; ++batch) {
+      written.batch(batch);
+      ASSERT_TRUE(inputs.write(written));
+    }
+
+    Participant recorder(member("record", Role::kRecorder));
+    Reader<msg::SceneInputs> read(recorder, Topic::kInputs);
+    std::uint64_t expected = 1;
+    EXPECT_TRUE(eventually([&] {
+      msg::SceneInputs found;
+      while (read.take(found)) EXPECT_EQ(found.batch(), expected++);
+      return expected > kKept;
+    })) << size
+        << " " << expected;
   }
 }
 
