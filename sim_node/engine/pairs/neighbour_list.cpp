@@ -484,18 +484,9 @@ void NeighbourList::keep_some(std::size_t part, std::size_t members) noexcept {
   const double* position = next_.from.data();
   for (; done < end; ++done) {
     const std::size_t b = count_q_ > 0 ? count_p_ + done : done;
-    std::uint32_t* found = found_.data() + found_begin_[b];
-    const double* centre = position + 4 * b;
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < next_.found_count[b]; ++i) {
-      const double* other = position + 4 * std::size_t{found[i]};
-      const double x = other[0] - centre[0];
-      const double y = other[1] - centre[1];
-      const double z = other[2] - centre[2];
-      found[kept] = found[i];
-      kept += x * x + y * y + z * z < reach ? 1U : 0U;
-    }
-    next_.found_count[b] = kept;
+    const std::size_t kept = kernel_->keep_near(
+        position, position + 4 * b, reach, found_.data() + found_begin_[b], next_.found_count[b]);
+    next_.found_count[b] = static_cast<std::uint32_t>(kept);
     count_rows(part, b, kept);
   }
 }

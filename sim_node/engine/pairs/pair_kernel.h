@@ -41,6 +41,12 @@ struct NearQuery {
 using FindNear = std::size_t (*)(const CellTable& table, std::size_t begin, std::size_t end,
                                  const NearQuery& query, std::uint32_t* found) noexcept;
 
+/// Keeps those of `count` members found that are nearer than the reach to a point, in their order.
+/// @param position  columns of the members
+/// @return how many
+using KeepNear = std::size_t (*)(const double* position, const double* point, double reach_square,
+                                 std::uint32_t* found, std::size_t count) noexcept;
+
 /// @return the largest square of the displacement of a column since it was at `from` [m^2]; columns
 /// that are not finite do not count.
 using LargestMove = double (*)(const double* position, const double* from,
@@ -246,6 +252,7 @@ using LennardJonesParts = void (*)(const LennardJonesPair& pair, const MemberCol
 /// The loops of one width.
 struct PairKernel {
   FindNear find_near = nullptr;
+  KeepNear keep_near = nullptr;
   LargestMove largest_move = nullptr;
   GatherPairs gather_pairs = nullptr;
   GatherPlane gather_plane = nullptr;

@@ -27,19 +27,57 @@ std::size_t find_near(const CellTable& table, std::size_t begin, std::size_t end
   const Row last = Lanes::every(query.last);
   std::size_t count = 0;
 
-  for (std::size_t i = begin; i < end; i += Lanes::kWidth) {
+  const auto near = [&](std::size_t i) noexcept {
     const Row x = Lanes::load_any(all.x + i) - at_x;
     const Row y = Lanes::load_any(all.y + i) - at_y;
     const Row z = Lanes::load_any(all.z + i) - at_z;
     const Row number = Lanes::load_any(all.number + i);
-    const unsigned chosen = Lanes::bits(Lanes::less(x * x + y * y + z * z, reach_square)) &
-                            Lanes::bits(Lanes::less(number, last)) &
-                            ~Lanes::bits(Lanes::less(number, first)) & first_lanes<Lanes>(end - i);
-    if (chosen == 0U) continue;
+    const auto in_range =
+        Lanes::both(Lanes::less_or_equal(first, number), Lanes::less(number, last));
+    return Lanes::bits(Lanes::both(Lanes::less(x * x + y * y + z * z, reach_square), in_range));
+  };
+  const auto write = [&](std::size_t i, unsigned chosen) noexcept {
+    if (chosen == 0U) return;
     Lanes::pack(found + count, all.member + i, chosen);
     count += static_cast<std::size_t>(__builtin_popcount(chosen));
-  }
+  };
+  std::size_t i = begin;
+  for (; i + Lanes::kWidth <= end; i += Lanes::kWidth) write(i, near(i));
+  if (i < end) write(i, near(i) & first_lanes<Lanes>(end - i));
   return count;
+}
+
+/// Nothing is written beyond the members found: what follows them may belong to another thread.
+template <class Lanes>
+std::size_t keep_near(const double* position, const double* point, double reach_square,
+                      std::uint32_t* found, std::size_t count) noexcept {
+  using Row = typename Lanes::Row;
+  const Row at_x = Lanes::every(point[0]);
+  const Row at_y = Lanes::every(point[1]);
+  const Row at_z = Lanes::every(point[2]);
+  const Row reach = Lanes::every(reach_square);
+  std::size_t kept = 0;
+  std::size_t i = 0;
+  for (; i + Lanes::kWidth <= count; i += Lanes::kWidth) {
+    alignas(64) std::uint32_t column[Lanes::kWidth];
+    for (std::size_t lane = 0; lane < Lanes::kWidth; ++lane) column[lane] = 4 * found[i + lane];
+    const typename Lanes::Row3 there = Lanes::vectors(position, column);
+    const Row x = there.x - at_x;
+    const Row y = there.y - at_y;
+    const Row z = there.z - at_z;
+    const unsigned chosen = Lanes::bits(Lanes::less(x * x + y * y + z * z, reach));
+    Lanes::pack(found + kept, found + i, chosen);
+    kept += static_cast<std::size_t>(__builtin_popcount(chosen));
+  }
+  for (; i < count; ++i) {
+    const double* other = position + 4 * std::size_t{found[i]};
+    const double x = other[0] - point[0];
+    const double y = other[1] - point[1];
+    const double z = other[2] - point[2];
+    found[kept] = found[i];
+    kept += x * x + y * y + z * z < reach_square ? 1U : 0U;
+  }
+  return kept;
 }
 
 template <class Lanes>
@@ -62,15 +100,20 @@ double largest_move(const double* position, const double* from, std::size_t coun
   return most;
 }
 
-/// Fills the last batch up.
+/// Columns of padding by the place in the batch, twice.
+// NOLINTNEXTLINE(misc-definitions-in-headers): each file has its own
+constexpr std::uint32_t kPaddingColumns[2 * kPairBatch] = {0, 4, 8, 12, 16, 20, 24, 28,
+                                                           0, 4, 8, 12, 16, 20, 24, 28};
+
+/// Fills the last batch up, and writes a batch in all.
 template <class Lanes>
 void pad_row(const MemberColumns& members, std::size_t count, const PairRow& row) noexcept {
-  for (std::size_t i = count; i % kPairBatch != 0; ++i) {
-    row.column[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
-    row.x[i] = 0.0;
-    row.y[i] = 0.0;
-    row.z[i] = 0.0;
-    row.square[i] = 0.0;
+  const std::size_t place = count % kPairBatch;
+  for (std::size_t i = 0; i < kPairBatch; ++i)
+    row.column[count + i] = members.padding + kPaddingColumns[place + i];
+  for (double* values : {row.x, row.y, row.z, row.square}) {
+    for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
+      Lanes::store_any(values + count + i, Lanes::zero());
   }
 }
 
@@ -88,21 +131,24 @@ std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
   const Row range = Lanes::every(range_square);
   std::size_t count = 0;
 
-  for (std::size_t i = 0; i < candidates; i += Lanes::kWidth) {
+  const auto gather = [&](std::size_t i, unsigned lanes) noexcept {
     const Row3 there = Lanes::vectors(position, neighbour + i);
     const Row x = there.x - at_x;
     const Row y = there.y - at_y;
     const Row z = there.z - at_z;
     const Row square = x * x + y * y + z * z;
-    const unsigned chosen =
-        Lanes::bits(Lanes::less(square, range)) & first_lanes<Lanes>(candidates - i);
+    const unsigned chosen = Lanes::bits(Lanes::less(square, range)) & lanes;
     Lanes::pack(out.column + count, neighbour + i, chosen);
     Lanes::pack(out.x + count, x, chosen);
     Lanes::pack(out.y + count, y, chosen);
     Lanes::pack(out.z + count, z, chosen);
     Lanes::pack(out.square + count, square, chosen);
     count += static_cast<std::size_t>(__builtin_popcount(chosen));
-  }
+  };
+  std::size_t i = 0;
+  for (; i + Lanes::kWidth <= candidates; i += Lanes::kWidth)
+    gather(i, first_lanes<Lanes>(Lanes::kWidth));
+  if (i < candidates) gather(i, first_lanes<Lanes>(candidates - i));
   return count;
 }
 
@@ -223,22 +269,14 @@ void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor,
   Lanes::subtract(force, row.column + i, tension, partner);
 }
 
-/// The 8 places of a batch in the same order at every width.
-template <class Lanes>
-double sum_of(const typename Lanes::Row* parts) noexcept {
-  alignas(64) double lane[kPairBatch];
-  for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-    Lanes::store(lane + part * Lanes::kWidth, parts[part]);
-  }
-  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
-}
-
+/// Adds the sums to a column.
 template <class Lanes>
 void give(const RowSum<Lanes>& sum, double* column) noexcept {
-  column[0] += sum_of<Lanes>(sum.x);
-  column[1] += sum_of<Lanes>(sum.y);
-  column[2] += sum_of<Lanes>(sum.z);
-  column[3] -= sum_of<Lanes>(sum.partners);
+  typename Lanes::Row partners[RowSum<Lanes>::kParts];
+  for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part)
+    partners[part] = Lanes::zero() - sum.partners[part];
+  Lanes::store_column(column,
+                      Lanes::load_column(column) + Lanes::sum_batch(sum.x, sum.y, sum.z, partners));
 }
 
 alignas(64) constexpr double kLaneNumber[] = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -544,6 +582,7 @@ template <class Lanes>
 #pragma GCC unroll 4
     for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
       const std::size_t first = i + part * Lanes::kWidth;
+      if (first >= count) break;  // padding gives nothing
       const Row square = Lanes::load(row.square + first);
       const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
       const auto touching =
@@ -592,11 +631,11 @@ void spread_to_later(const PairRows& rows, const double* factor, double* force) 
 
 template <class Lanes>
 constexpr PairKernel make_pair_kernel() noexcept {
-  return PairKernel{find_near<Lanes>,       largest_move<Lanes>,       gather_pairs<Lanes>,
-                    gather_plane<Lanes>,    take_members<Lanes>,       give_forces<Lanes>,
-                    measure_pairs<Lanes>,   spread_rows<Lanes>,        linear_pairs<Lanes>,
-                    friction_pairs<Lanes>,  spread_vectors<Lanes>,     lennard_jones_rows<Lanes>,
-                    spread_to_later<Lanes>, lennard_jones_parts<Lanes>};
+  return PairKernel{find_near<Lanes>,          keep_near<Lanes>,       largest_move<Lanes>,
+                    gather_pairs<Lanes>,       gather_plane<Lanes>,    take_members<Lanes>,
+                    give_forces<Lanes>,        measure_pairs<Lanes>,   spread_rows<Lanes>,
+                    linear_pairs<Lanes>,       friction_pairs<Lanes>,  spread_vectors<Lanes>,
+                    lennard_jones_rows<Lanes>, spread_to_later<Lanes>, lennard_jones_parts<Lanes>};
 }
 
 }  // namespace cordis::engine

@@ -396,6 +396,27 @@ void SetPairs::visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept
   }
 }
 
+/// Visits the members of a chunk; whole batches whose MATs follow one another are visited together.
+template <class VisitOne, class VisitRun>
+void SetPairs::visit_chunk(std::size_t chunk, VisitOne visit_one,
+                           VisitRun visit_run) const noexcept {
+  const std::size_t last = std::min(column_.size(), (chunk + 1) * chunk_);
+  for (std::size_t m = chunk * chunk_; m < last;) {
+    std::size_t count = 0;
+    while (m + count + kPairBatch <= last && is_run_[(m + count) / kPairBatch] &&
+           column_[m + count] == column_[m] + 4 * count) {
+      count += kPairBatch;
+    }
+    if (count > 0) {
+      visit_run(m, count);
+      m += count;
+      continue;
+    }
+    const std::size_t end = std::min(last, m + kPairBatch);
+    for (; m < end; ++m) visit_one(m);
+  }
+}
+
 /// How many of the balls from a place on are whole batches of members and of MATs.
 std::size_t SetPairs::run_at(std::size_t place) const noexcept {
   const std::vector<std::uint32_t>& balls = surfaces_.members();
@@ -615,13 +636,18 @@ inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) con
 StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* team) noexcept {
   if (!works_.empty() && active_.are_all()) {
     visit_chunks(team, [&](std::size_t chunk) noexcept {
-      StepEnergy work;
-      const std::size_t last = std::min(column_.size(), (chunk + 1) * chunk_);
-      for (std::size_t m = chunk * chunk_; m < last; ++m) {
-        take_position(m, columns);
-        work += work_of(m, moved_.data() + 4 * m);
-      }
-      works_[chunk] = work;
+      MemberWorks sum;
+      visit_chunk(
+          chunk,
+          [&](std::size_t m) {
+            take_position(m, columns);
+            add_work(m, sum);
+          },
+          [&](std::size_t first, std::size_t count) {
+            kernel_.take_members(columns.position + column_[first],
+                                 columns.delayed + column_[first], count, values_from(first), sum);
+          });
+      works_[chunk] = energy_of(sum);
     });
     return sum_of_works();
   }
@@ -707,13 +733,17 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
 }
 
 void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& columns) noexcept {
-  StepEnergy work;
-  const std::size_t last = std::min(column_.size(), (chunk + 1) * chunk_);
-  for (std::size_t m = chunk * chunk_; m < last; ++m) {
-    give_force(m, columns);
-    work += work_of(m, moved_.data() + 4 * m);
-  }
-  works_[chunk] = work;
+  MemberWorks sum;
+  visit_chunk(
+      chunk,
+      [&](std::size_t m) {
+        give_force(m, columns);
+        add_work(m, sum);
+      },
+      [&](std::size_t first, std::size_t count) {
+        kernel_.give_forces(values_from(first), count, columns.force + column_[first], sum);
+      });
+  works_[chunk] = energy_of(sum);
 }
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {

@@ -148,6 +148,8 @@ class SetPairs {
   void visit_with_forces(Visit visit) const noexcept;
   template <class VisitOne, class VisitRun>
   void visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept;
+  template <class VisitOne, class VisitRun>
+  void visit_chunk(std::size_t chunk, VisitOne visit_one, VisitRun visit_run) const noexcept;
   std::size_t run_at(std::size_t place) const noexcept;
   MemberValues values_from(std::size_t member) noexcept;
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {

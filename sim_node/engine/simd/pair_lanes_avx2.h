@@ -16,6 +16,13 @@ alignas(32) constexpr std::int32_t kPackHalves[16][8] = {
     {4, 5, 6, 7, 0, 1, 0, 1}, {0, 1, 4, 5, 6, 7, 0, 1}, {2, 3, 4, 5, 6, 7, 0, 1},
     {0, 1, 2, 3, 4, 5, 6, 7}};
 
+/// Likewise, of 32-bit numbers.
+// NOLINTNEXTLINE(misc-definitions-in-headers)
+alignas(16) constexpr std::int32_t kPackWords[16][4] = {
+    {0, 0, 0, 0}, {0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {2, 0, 0, 0}, {0, 2, 0, 0},
+    {1, 2, 0, 0}, {0, 1, 2, 0}, {3, 0, 0, 0}, {0, 3, 0, 0}, {1, 3, 0, 0}, {0, 1, 3, 0},
+    {2, 3, 0, 0}, {0, 2, 3, 0}, {1, 2, 3, 0}, {0, 1, 2, 3}};
+
 struct Avx2PairLanes : Avx2Lanes {
   static Row3 vectors(const double* columns, const std::uint32_t* offset) noexcept {
     return transposed(load(columns + offset[0]), load(columns + offset[1]),
@@ -36,14 +43,30 @@ struct Avx2PairLanes : Avx2Lanes {
     subtract_column(columns + offset[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
   }
 
+  static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
+    const Row x04 = x[0] + x[1];  // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7
+    const Row y04 = y[0] + y[1];
+    const Row z04 = z[0] + z[1];
+    const Row w04 = w[0] + w[1];
+    const Row even_xy = _mm256_unpacklo_pd(x04, y04);
+    const Row odd_xy = _mm256_unpackhi_pd(x04, y04);
+    const Row even_zw = _mm256_unpacklo_pd(z04, w04);
+    const Row odd_zw = _mm256_unpackhi_pd(z04, w04);
+    return (_mm256_permute2f128_pd(even_xy, even_zw, 0x20) +
+            _mm256_permute2f128_pd(even_xy, even_zw, 0x31)) +
+           (_mm256_permute2f128_pd(odd_xy, odd_zw, 0x20) +
+            _mm256_permute2f128_pd(odd_xy, odd_zw, 0x31));
+  }
+
   static void pack(double* out, Row v, unsigned chosen) noexcept {
     const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(kPackHalves[chosen]));
     _mm256_storeu_pd(
         out, _mm256_castsi256_pd(_mm256_permutevar8x32_epi32(_mm256_castpd_si256(v), order)));
   }
   static void pack(std::uint32_t* out, const std::uint32_t* in, unsigned chosen) noexcept {
-    const std::int32_t* order = kPackHalves[chosen];
-    for (std::size_t i = 0; i < kWidth; ++i) out[i] = in[order[2 * i] / 2];
+    const __m128 all = _mm_loadu_ps(reinterpret_cast<const float*>(in));
+    const __m128i order = _mm_load_si128(reinterpret_cast<const __m128i*>(kPackWords[chosen]));
+    _mm_storeu_ps(reinterpret_cast<float*>(out), _mm_permutevar_ps(all, order));
   }
 
  private:

@@ -38,6 +38,21 @@ struct Avx512PairLanes : Avx512Lanes {
     subtract_column(columns + offset[7], _mm512_extractf64x4_pd(c37, 1));
   }
 
+  static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
+    const Column x04 = sum_halves(*x);  // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7
+    const Column y04 = sum_halves(*y);
+    const Column z04 = sum_halves(*z);
+    const Column w04 = sum_halves(*w);
+    const Column even_xy = _mm256_unpacklo_pd(x04, y04);
+    const Column odd_xy = _mm256_unpackhi_pd(x04, y04);
+    const Column even_zw = _mm256_unpacklo_pd(z04, w04);
+    const Column odd_zw = _mm256_unpackhi_pd(z04, w04);
+    return (_mm256_permute2f128_pd(even_xy, even_zw, 0x20) +
+            _mm256_permute2f128_pd(even_xy, even_zw, 0x31)) +
+           (_mm256_permute2f128_pd(odd_xy, odd_zw, 0x20) +
+            _mm256_permute2f128_pd(odd_xy, odd_zw, 0x31));
+  }
+
   static void pack(double* out, Row v, unsigned chosen) noexcept {
     _mm512_storeu_pd(out, _mm512_maskz_compress_pd(static_cast<__mmask8>(chosen), v));
   }
@@ -49,6 +64,9 @@ struct Avx512PairLanes : Avx512Lanes {
   }
 
  private:
+  static Column sum_halves(Row v) noexcept {
+    return _mm512_castpd512_pd256(v) + _mm512_extractf64x4_pd(v, 1);
+  }
   static void subtract_column(double* column, Column v) noexcept {
     store_column(column, load_column(column) - v);
   }

@@ -23,6 +23,10 @@ struct Sse2PairLanes : Sse2Lanes {
     store_column(columns + offset[1], load_column(columns + offset[1]) - second);
   }
 
+  static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
+    return {sum_lanes(quarters(x), quarters(y)), sum_lanes(quarters(z), quarters(w))};
+  }
+
   static void pack(double* out, Row v, unsigned chosen) noexcept {
     _mm_storeu_pd(out, chosen == 2U ? _mm_unpackhi_pd(v, v) : v);
   }
@@ -32,6 +36,14 @@ struct Sse2PairLanes : Sse2Lanes {
   }
 
  private:
+  /// Lanes (0 + 4) + (2 + 6) and (1 + 5) + (3 + 7) of a batch.
+  static Row quarters(const Row* parts) noexcept {
+    return (parts[0] + parts[2]) + (parts[1] + parts[3]);
+  }
+  /// Lane 0 + lane 1 of u, and of v.
+  static Row sum_lanes(Row u, Row v) noexcept {
+    return _mm_unpacklo_pd(u, v) + _mm_unpackhi_pd(u, v);
+  }
   static Row3 transposed(const Column& u, const Column& v) noexcept {
     return {_mm_unpacklo_pd(u.xy, v.xy), _mm_unpackhi_pd(u.xy, v.xy), _mm_unpacklo_pd(u.z, v.z)};
   }
