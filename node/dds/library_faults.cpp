@@ -79,8 +79,8 @@ const OfLibrary& of_library() noexcept {
   return kFound;
 }
 
-// What a message gains when it is encrypted: a prefix, a header, a body, padding and a postfix with
-// a tag; for each receiver a tag more; and what Fast DDS appends for its statistics.
+// What encryption adds to a message: a prefix, a header, a body, padding and a postfix with a tag.
+// Each receiver has a tag of its own. Fast DDS appends room for statistics at last.
 constexpr std::size_t kEncryptionBytes = 68;
 constexpr std::size_t kBytesOfReceiver = 20;
 constexpr std::size_t kMoreReceivers = 10;  // that may come before it is sent

@@ -189,15 +189,21 @@ StateMachine touching(double stiffness, const Term& begins, const Term& ends) {
   return Behaving().state(0.0).exit(begins, 1).state(stiffness).exit(ends, 0).state_machine;
 }
 
-std::string why_uncertain(StateMachine machine, double rest, std::vector<double> radii = {0.05}) {
+std::string why_uncertain(StateMachine machine, double rest, std::vector<double> radii = {0.05},
+                          const std::vector<double>& tubes = {0.4}) {
   NetworkDescription scene;
   scene.dimension = 2;
   scene.step = 1e-4;
   for (std::size_t i = 0; i < radii.size(); ++i)
     scene.mats.push_back(mass(0.2, Vec3(0.0, 0.02 * static_cast<double>(i), 0.0)));
   scene.radius = std::move(radii);
-  const auto surfaces = add_hollow(scene, cylinder(Vec3::UnitZ(), 0.4), Vec3::Zero());
-  const auto count = static_cast<std::uint32_t>(scene.mats.size() - surfaces.size());
+  const auto count = static_cast<std::uint32_t>(scene.mats.size());
+  std::vector<std::uint32_t> surfaces;
+  for (const double tube : tubes) {
+    for (const std::uint32_t surface :
+         add_hollow(scene, cylinder(Vec3::UnitZ(), tube), Vec3::Zero()))
+      surfaces.push_back(surface);
+  }
   touch(scene, count, std::move(machine), 0.2, rest, surfaces);
   const plan::Plan plan = plan::plan_of(scene, 0.1);
   return plan.stability.uncertainty ? plan.stability.uncertainty->why : "";
@@ -230,6 +236,9 @@ TEST(HollowBound, OfAContactOfTwoStatesIsCertainWhereItsExitSurelyEndsItBeforeTh
   }
   EXPECT_EQ(why_uncertain(touching(2000.0, e<0.0, d> 0.06), -1.0, {0.05, 0.03}), on_axis)
       << "a distance says nothing of rest lengths that differ";
+  const auto begins_far_in = touching(2000.0, either(e<0.0, e> 0.5), both(e >= 0.0, e < 0.45));
+  EXPECT_EQ(why_uncertain(begins_far_in, -1.0), "");
+  EXPECT_EQ(why_uncertain(begins_far_in, -1.0, {0.05}, {0.4, 1.0}), on_axis) << "of the wider tube";
   StateMachine moves = touching(2000.0, e < 0.0, e >= 0.0);
   moves.exits[1].rest = RestRule::kHere;
   EXPECT_NE(why_uncertain(moves, -1.0), "");

@@ -29,7 +29,7 @@ class Quadrature {
     for (int panels = 0; depth > 0; ++panels) {
       const Interval next = left[--depth];
       const Panel panel = panel_of(next.low, next.high);
-      if (size == 0.0) size = std::abs(panel.kronrod);
+      if (size == 0.0) size = panel.size;
       const bool is_last = panels >= kMaxPanels || depth + 2 > left.size();
       const double error = std::abs(panel.kronrod - panel.gauss);
       if (is_last || !(error > kTolerance * std::max(size, std::abs(sum)))) {
@@ -51,6 +51,7 @@ class Quadrature {
   struct Panel {
     double kronrod;
     double gauss;
+    double size;  // of the integral, were all values of one sign
   };
 
   Panel panel_of(double low, double high) const noexcept {
@@ -69,15 +70,17 @@ class Quadrature {
         0.381830050505118944950369775488975, 0.417959183673469387755102040816327};
     const double centre = 0.5 * (low + high);
     const double half = 0.5 * (high - low);
-    Panel sum{0.0, 0.0};
+    Panel sum{0.0, 0.0, 0.0};
     for (std::size_t i = 0; i < kNode.size(); ++i) {
       const double away = half * kNode[i];
-      const double value =
-          i + 1 == kNode.size() ? f_(centre) : f_(centre - away) + f_(centre + away);
+      const double low_value = f_(centre - away);
+      const double high_value = i + 1 == kNode.size() ? 0.0 : f_(centre + away);
+      const double value = low_value + high_value;
       sum.kronrod += kKronrod[i] * value;
+      sum.size += kKronrod[i] * (std::abs(low_value) + std::abs(high_value));
       if (i % 2 == 1) sum.gauss += kGauss[i / 2] * value;
     }
-    return {half * sum.kronrod, half * sum.gauss};
+    return {half * sum.kronrod, half * sum.gauss, std::abs(half) * sum.size};
   }
 
   Function f_;

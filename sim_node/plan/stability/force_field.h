@@ -26,7 +26,8 @@ struct FoundSlope {
 /// The size of the largest number of an interval.
 double largest_of(const Interval& interval) noexcept;
 
-/// The formulas of a force, and what they may meet; of one thread at a time. A coordinate is a place on an axis, or 3 + a velocity along it.
+/// The formulas of a force, and what they may meet; of one thread at a time. A coordinate is a place on an axis, or 3
+/// more for the velocity along it.
 class ForceField {
  public:
   /// @param ranges  of the variables of the network of the function

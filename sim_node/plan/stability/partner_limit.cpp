@@ -120,8 +120,8 @@ class Partners {
   }
 
  private:
-  /// Makes MATs at laws without a largest slope lighter: the bound at them comes to the geometric mean of that of the
-  /// needed numbers and 4.
+  /// Raises the inverse masses at laws without a largest slope, so that a bound below sqrt(4 n) there is one below 4: n is
+  /// that of the needed numbers.
   void leave_room_for_energies() {
     const double needed = row_weights(graph_, step_).number;
     if (!(needed < kLimit)) return;

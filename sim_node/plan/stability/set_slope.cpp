@@ -38,15 +38,16 @@ double flips_at(const engine::Surface& surface, int dimension) {
   return 0.0;
 }
 
-/// The radius of the narrowest hollow cylinder among the surfaces of a set [m]; infinite: there is none.
-double narrowest_hollow(const NetworkDescription& network, const engine::SetLiaison& set) {
-  double narrowest = std::numeric_limits<double>::infinity();
+/// The radii of the hollow cylinders among the surfaces of a set.
+HollowRadii hollow_radii(const NetworkDescription& network, const engine::SetLiaison& set) {
+  HollowRadii radii;
   for (const std::uint32_t mat : set.set_p) {
     const engine::Surface& surface = *engine::surface_of(network, mat);
-    if (surface.kind == engine::SurfaceKind::kCylinderWall)
-      narrowest = std::min(narrowest, surface.half_size[0]);
+    if (surface.kind != engine::SurfaceKind::kCylinderWall) continue;
+    radii.narrowest = std::min(radii.narrowest, surface.half_size[0]);
+    radii.widest = std::max(radii.widest, surface.half_size[0]);
   }
-  return narrowest;
+  return radii;
 }
 
 /// The longest rest length of a pair [m].
@@ -134,7 +135,7 @@ Slope largest_slope_of(const NetworkDescription& network, const engine::SetLiais
   if (engine::acts_on_surfaces(network, set)) {
     slope = largest_slope_at_surfaces(state_machine, start.rest_length, flips_at(network, set),
                                       start.reach);
-    slope = with_hollow(slope, state_machine, narrowest_hollow(network, set),
+    slope = with_hollow(slope, state_machine, hollow_radii(network, set),
                         longest_rest(network, set), start.reach);
   } else {
     slope = largest_slope(state_machine, start.rest_length, network.dimension, start.reach);

@@ -429,8 +429,9 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
 
 /// The force is at most what it is where it ends and its largest slope from there on, so that its share
 /// of the radius is largest at the wall, or at that end.
-Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double radius,
+Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, const HollowRadii& radii,
                   double rest_length, const Reach& reach) {
+  const double radius = radii.narrowest;
   if (std::isinf(radius)) return slope;
   const bool rest_moves = moves_rest(state_machine);
   const double along = slope.stiffness;
@@ -438,7 +439,7 @@ Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double
   const auto end_of = [&](std::size_t state) {
     if (state == state_machine.start) return std::min(reach.range, radius);
     if (rest_moves) return radius;
-    const double highest = reach.rests_differ ? radius : radius - rest_length;
+    const double highest = reach.rests_differ ? radii.widest : radii.widest - rest_length;
     const double last = last_elongation_of(state_machine, state, highest, rest_length, reach);
     return last < highest ? std::min(rest_length + last, radius) : radius;
   };

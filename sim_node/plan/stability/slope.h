@@ -1,6 +1,8 @@
 // sim_node/plan/stability/slope.h -- how stiff and how viscous a liaison can become.
 #pragma once
 
+#include <limits>
+
 #include "sim_node/engine/description/state_machine.h"
 #include "sim_node/plan/stability/reach.h"
 
@@ -40,12 +42,17 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 
+/// The radii of hollow cylinders [m].
+struct HollowRadii {
+  double narrowest = std::numeric_limits<double>::infinity();  ///< infinite without one
+  double widest = 0.0;
+};
+
 /// Adds what a push gains across by the round wall of a hollow cylinder: a push P at the distance d from a wall of
 /// the radius R has the stiffness P / (R - d) around its axis. Uncertain where anything acts on the axis.
 /// @param slope        of the liaison at its surfaces, along the normal
-/// @param radius       of the narrowest one [m], infinite without one
 /// @param rest_length  the longest [m]
-Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, double radius,
+Slope with_hollow(Slope slope, const engine::StateMachine& state_machine, const HollowRadii& radii,
                   double rest_length, const Reach& reach);
 
 /// True if the force of a pair of a set of 1 dimension jumps where its ends pass each other, for it pulls there.
