@@ -18,13 +18,10 @@ namespace {
 
 using engine::NetworkDescription;
 
-/// True if the step is certified with so many partners as may come.
-bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph,
-                  const std::vector<PartnerLimit>& partners) {
+bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) {
   if (network.integrator == engine::IntegratorKind::kModal)
     return stability_of(network, graph).holds();
-  return !uncertainty_of(network, graph) &&
-         network.step < certified_bound(network, with_certified_partners(graph, partners)).step;
+  return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
 }
 
 /// The largest factor of an energy, at least 1 and to `finest` of it, up to which `holds` is true. The last factor
@@ -96,9 +93,8 @@ double deepest_well(const engine::StateMachine& state_machine) {
 /// The energies of the pairs of sets of balls, raised as far as the step of a graph is certified.
 class PairEnergies {
  public:
-  PairEnergies(const NetworkDescription& network, const LiaisonGraph& graph,
-               const std::vector<PartnerLimit>& partners)
-      : network_(network), graph_(graph), partners_(partners) {
+  PairEnergies(const NetworkDescription& network, const LiaisonGraph& graph)
+      : network_(network), graph_(graph) {
     for (const ContactBound& contact : graph.contacts) {
       const engine::SetLiaison& set = network.sets[contact.set];
       const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
@@ -136,7 +132,7 @@ class PairEnergies {
     raise_by(largest_factor(
         [&](double factor) {
           raise_by(factor);
-          return is_certified(network_, graph_, partners_);
+          return is_certified(network_, graph_);
         },
         kFinest));
   }
@@ -154,14 +150,12 @@ class PairEnergies {
 
   const NetworkDescription& network_;
   LiaisonGraph graph_;
-  const std::vector<PartnerLimit>& partners_;
   std::vector<SetStart> starts_;  // of each limit
   std::vector<PairLimit> limits_;
 };
 
 /// The energies to which laws without a largest slope were followed in a graph.
-ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph,
-                    const std::vector<PartnerLimit>& partners) {
+ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph) {
   ReachLimit limit;
   limit.speed = graph.reach.speed;
   const bool turns = network.dimension > 1;
@@ -173,7 +167,7 @@ ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph
         limit.energy,
         energy_followed(network.state_machines[link.state_machine], link.rest_length, turns, here));
   }
-  limit.pairs = PairEnergies(network, graph, partners).find();
+  limit.pairs = PairEnergies(network, graph).find();
   for (const ContactBound& contact : graph.contacts) {
     const engine::SetLiaison& set = network.sets[contact.set];
     const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
@@ -231,16 +225,15 @@ ReachLimit reach_limit(const NetworkDescription& network) {
   constexpr double kFinest = 1.1;
   LiaisonGraph graph = liaison_graph(network);
   if (graph.bounded) return {};
-  if (!is_certified(network, graph, {})) return {};
-  const std::vector<PartnerLimit> partners = partner_limits(network, graph, /*holds=*/true);
+  if (!is_certified(network, graph)) return {};
   const auto holds = [&](double factor) {
     LiaisonGraph wider = liaison_graph(network, factor);
-    if (!is_certified(network, wider, partners)) return false;
+    if (!is_certified(network, wider)) return false;
     graph = std::move(wider);
     return true;
   };
   largest_factor(holds, kFinest);
-  return limit_of(network, graph, partners);
+  return limit_of(network, graph);
 }
 
 double pair_energy(const engine::World& world, const engine::SetLiaison& set) noexcept {

@@ -30,9 +30,9 @@ struct ReachLimit {
   }
 };
 
-/// The Reach of the start, its energies raised by up to a million, to a tenth: as long as the step is certified with
-/// the partners that partner_limits() has. Where Lennard-Jones alone has no largest slope in a set, the energy of its
-/// pairs is raised further: of all such sets together, then of one after the other. Infinite where every law has a
+/// The Reach of the start, its energies raised by up to a million as long as the step is certified, to
+/// a tenth. Where Lennard-Jones alone has no largest slope in a set, the energy of its pairs is raised
+/// further: of all such sets together, then of one after the other. Infinite where every law has a
 /// largest slope, and where the step is not certified. O(liaisons), and O(liaisons) for each set.
 ReachLimit reach_limit(const engine::NetworkDescription& network);
 

@@ -169,42 +169,6 @@ TEST(ReachLimit, OfASetAtRestIsThatOfItsStep) {
   EXPECT_LT(plan::reach_limit(scene).pairs.at(0).energy, 1.1 * kDepth);
 }
 
-/// Sixty balls in rows: each that is not at the border touches six at the start.
-NetworkDescription crowd_at_rest() {
-  NetworkDescription scene = balls_at_rest();
-  scene.mats.clear();
-  scene.sets[0].set_p.clear();
-  for (std::uint32_t i = 0; i < 60; ++i) {
-    const double row = i / 10;
-    scene.mats.push_back(
-        mass(0.1, Vec3(0.11225 * (i % 10 + 0.5 * row), 0.11225 * std::sqrt(0.75) * row, 0)));
-    scene.sets[0].set_p.push_back(i);
-  }
-  return scene;
-}
-
-/// A run may come to both limits at once: with the most partners of the most energy the step is still certified.
-TEST(ReachLimit, SharesTheMarginOfTheStepWithThePartnersOfSets) {
-  NetworkDescription scene = crowd_at_rest();
-  const double longest = longest_certain_step(scene);
-  for (const double part : {0.7, 0.9, 0.999}) {
-    scene.step = part * longest;
-    plan::LiaisonGraph graph = plan::liaison_graph(scene);
-    const plan::Stability stability = plan::stability_of(scene, graph);
-    ASSERT_TRUE(stability.holds()) << part;
-    ASSERT_FALSE(stability.sets.at(0).is_guaranteed()) << part;
-    const double energy = plan::reach_limit(scene).pairs.at(0).energy;
-    if (part < 0.8) {
-      EXPECT_GT(stability.sets[0].least, 7u) << part;
-      EXPECT_GT(energy, 2.0 * kDepth) << part;
-    }
-    graph = plan::with_certified_partners(std::move(graph), stability.sets);
-    ASSERT_TRUE(graph.contacts.at(0).counted);
-    graph.contacts[0].stiffness = slope_at(energy);
-    EXPECT_GT(plan::certified_bound(scene, graph).step, scene.step) << part;
-  }
-}
-
 /// A light ball among heavy ones limits the step, and not the energy of the heavy ones among themselves.
 TEST(ReachLimit, OfOneSetIsNotThatOfAnother) {
   NetworkDescription scene = balls_at_rest();

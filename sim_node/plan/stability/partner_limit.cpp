@@ -34,7 +34,6 @@ class Partners {
         if (contact.neighbours[m] < contact.possible[m]) grows_[contact.set] = true;
       }
     }
-    if (!graph.bounded) leave_room_for_energies();
   }
 
   /// True if a row bound of the step stays below 4 with these factors, one for each set.
@@ -120,24 +119,6 @@ class Partners {
   }
 
  private:
-  /// Raises the inverse masses at laws without a largest slope, so that a bound below sqrt(4 n) there is one below 4: n is
-  /// that of the needed numbers.
-  void leave_room_for_energies() {
-    const double needed = row_weights(graph_, step_).number;
-    if (!(needed < kLimit)) return;
-    std::vector<bool> has_endless_law(graph_.inverse_mass.size(), false);
-    for (const Edge& edge : graph_.edges) {
-      if (!edge.bounded) has_endless_law[edge.mat_a] = has_endless_law[edge.mat_b] = true;
-    }
-    for (const ContactBound& contact : graph_.contacts) {
-      for (const std::uint32_t mat : contact.members)
-        if (!contact.bounded) has_endless_law[mat] = true;
-    }
-    for (std::size_t i = 0; i < has_endless_law.size(); ++i) {
-      if (has_endless_law[i]) graph_.inverse_mass[i] *= std::sqrt(kLimit / needed);
-    }
-  }
-
   double step_;
   LiaisonGraph graph_;
   std::vector<double> factor_;

@@ -31,9 +31,8 @@ struct PartnerLimit {
 };
 
 /// The limits of all sets: the numbers that the graph has times the largest factors, to 1 %, with which a row
-/// bound of the step stays below 4. At MATs with a law without a largest slope it stays below sqrt(4 n), for a bound n with
-/// the needed numbers. What is left there belongs to the energies of reach_limit(). All sets are raised together
-/// by half, then one after the other; so many large sets that this takes minutes are raised together alone.
+/// bound of the step stays below 4. All sets are raised together by half, then one after the other; so
+/// many large sets that this takes minutes are raised together alone.
 /// Not below the numbers of the graph where `holds`, for then these are certified. O(liaisons).
 /// @param graph  without weights, of this network
 /// @param holds  the certified step of the graph is above that of the network
