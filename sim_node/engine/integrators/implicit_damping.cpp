@@ -196,6 +196,7 @@ void ImplicitDamping::add_response(double force) noexcept {
 void ImplicitDamping::find_carried_forces(const MatArray& mats,
                                           const AlignedVector<double>& losses) noexcept {
   const auto kick_without_losses = [&](std::uint32_t mat) {
+    if (losses.empty()) return mats.kick_of(mat, mats.force(mat));
     return mats.kick_of(mat, mats.force(mat) - column(losses, mat));
   };
   std::fill(response_.begin(), response_.end(), 0.0);
@@ -252,8 +253,10 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
     const double energy_at_begin = mass_[i] * dot(begin, begin);
     work.dissipated += 0.5 * dot(begin + end, column(drag_, i));
     if (first) work.dissipated += 0.25 * dot(end - begin, column(response_, i));
-    const Vec3 known = mats.position(i) - mats.layout().vector(extrapolated.data(), i);
-    work.dissipated += (part * dt_ * dt_) * dot(known - 0.5 * (begin + end), column(losses, i));
+    if (!losses.empty()) {
+      const Vec3 known = mats.position(i) - mats.layout().vector(extrapolated.data(), i);
+      work.dissipated += (part * dt_ * dt_) * dot(known - 0.5 * (begin + end), column(losses, i));
+    }
     work.kinetic += first ? energy_at_begin : 0.5 * (energy_at_begin + mass_[i] * dot(end, end));
     if (!first) column(second_, i) = 2.0 * end - column(middle_, i);
     column(displacement_, i) = end;

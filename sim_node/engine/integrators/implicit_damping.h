@@ -80,7 +80,7 @@ class ImplicitDamping {
   };
   /// Ends the period: moves the masses to x(n+1).
   /// @param extrapolated   becomes x(n+1) - dt v(n+1), stored as the MATs are
-  /// @param losses  forces of others on each MAT that store no energy, 4 x N [N]. The account has what they take at
+  /// @param losses  forces of others on each MAT that store no energy, 4 x N [N]; empty: there are none. The account has what they take at
   ///                the extrapolated velocity, and Work::dissipated the rest up to what they take on the way.
   /// Real time: O(MATs + dampers), no allocation.
   Work advance(MatArray& mats, AlignedVector<double>& extrapolated,

@@ -9,6 +9,15 @@
 
 namespace cordis::engine {
 
+namespace {
+
+/// True if forces other than those of implicit dampers may store no energy.
+bool has_explicit_losses(const NetworkDescription& network) noexcept {
+  return !network.state_links.empty() || !network.bends.empty() || !network.sets.empty();
+}
+
+}  // namespace
+
 Leapfrog::Leapfrog(const NetworkDescription& network)
     : FullStepIntegrator(layout_of(network).value_count(network.mats.size()) +
                          4 * network.mats.size() + 2),
@@ -16,7 +25,7 @@ Leapfrog::Leapfrog(const NetworkDescription& network)
       stiff_friction_(network),
       layout_(layout_of(network)),
       velocity_(4 * network.mats.size(), 0.0),
-      losses_(damping_ ? velocity_.size() : 0, 0.0) {
+      losses_(damping_ && has_explicit_losses(network) ? velocity_.size() : 0, 0.0) {
   // What asks for velocities before start() has those of the network.
   for (std::size_t i = 0; i < network.mats.size(); ++i)
     set_extrapolated(i, network.mats[i].position - network.step * network.mats[i].velocity);
@@ -120,7 +129,7 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
 /// comes after.
 std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) noexcept {
   damping_->find_velocities(world.mats, nullptr);
-  world.find_viscous_forces(losses_);
+  if (!losses_.empty()) world.find_viscous_forces(losses_);
   const ImplicitDamping::Work work = damping_->advance(world.mats, extrapolated_, losses_);
   const double before = started_ ? 0.5 : 0.0;
   energy.dissipated += before * work.dissipated;

@@ -65,7 +65,8 @@ class Leapfrog final : public FullStepIntegrator {
   StiffFriction stiff_friction_;
   MatLayout layout_;
   AlignedVector<double> velocity_;  // dt v(n-1/2), 4 x N [m]
-  AlignedVector<double> losses_;    // explicit forces that store no energy, 4 x N [N]
+  AlignedVector<double>
+      losses_;  // explicit forces that store no energy, 4 x N [N]; empty without any
 };
 
 }  // namespace cordis::engine
