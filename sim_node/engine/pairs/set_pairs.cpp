@@ -632,22 +632,28 @@ inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) con
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
+/// Gathers the members that are visited, and ends the account of their last forces.
+template <class Visit>
+StepEnergy SetPairs::take_visited(const ForceColumns& columns, Visit visit) noexcept {
+  MemberWorks sum;
+  visit(
+      [&](std::size_t m) {
+        take_position(m, columns);
+        add_work(m, sum);
+      },
+      [&](std::size_t first, std::size_t count) {
+        kernel_.take_members(columns.position + column_[first], columns.delayed + column_[first],
+                             count, values_from(first), sum);
+      });
+  return energy_of(sum);
+}
+
 /// Gathers the members, and ends the account of the last forces.
 StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* team) noexcept {
   if (!works_.empty() && active_.are_all()) {
     visit_chunks(team, [&](std::size_t chunk) noexcept {
-      MemberWorks sum;
-      visit_chunk(
-          chunk,
-          [&](std::size_t m) {
-            take_position(m, columns);
-            add_work(m, sum);
-          },
-          [&](std::size_t first, std::size_t count) {
-            kernel_.take_members(columns.position + column_[first],
-                                 columns.delayed + column_[first], count, values_from(first), sum);
-          });
-      works_[chunk] = energy_of(sum);
+      works_[chunk] =
+          take_visited(columns, [&](auto one, auto run) { visit_chunk(chunk, one, run); });
     });
     return sum_of_works();
   }
@@ -659,20 +665,12 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
     });
     return work;
   }
-  MemberWorks sum;
-  visit_runs(
-      [&](std::size_t m) {
-        take_position(m, columns);
-        add_work(m, sum);
-      },
-      [&](std::size_t first, std::size_t count) {
-        kernel_.take_members(columns.position + column_[first], columns.delayed + column_[first],
-                             count, values_from(first), sum);
-      });
+  const StepEnergy work =
+      take_visited(columns, [this](auto one, auto run) { visit_runs(one, run); });
   measure_surfaces(columns.position, column_, /*may_leave=*/true);
   // A ball that is new here has had no force.
   if (surfaces_changed_) visit_with_forces([&](std::size_t m) { take_position(m, columns); });
-  return energy_of(sum);
+  return work;
 }
 
 /// Measures the balls that have come too far since they were measured.
@@ -732,10 +730,11 @@ std::uint32_t SetPairs::largest_among(std::size_t first, std::size_t last) const
   return static_cast<std::uint32_t>(std::ceil(largest));
 }
 
-void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& columns) noexcept {
+/// Gives the forces of the members that are visited to their MATs, and begins the account of them.
+template <class Visit>
+StepEnergy SetPairs::give_visited(const ForceColumns& columns, Visit visit) noexcept {
   MemberWorks sum;
-  visit_chunk(
-      chunk,
+  visit(
       [&](std::size_t m) {
         give_force(m, columns);
         add_work(m, sum);
@@ -743,7 +742,11 @@ void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& colum
       [&](std::size_t first, std::size_t count) {
         kernel_.give_forces(values_from(first), count, columns.force + column_[first], sum);
       });
-  works_[chunk] = energy_of(sum);
+  return energy_of(sum);
+}
+
+void SetPairs::give_forces_of_chunk(std::size_t chunk, const ForceColumns& columns) noexcept {
+  works_[chunk] = give_visited(columns, [&](auto one, auto run) { visit_chunk(chunk, one, run); });
 }
 
 StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
@@ -752,16 +755,7 @@ StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
     return sum_of_works();
   }
   if (!surfaces_.empty()) {
-    MemberWorks sum;
-    visit_runs(
-        [&](std::size_t m) {
-          give_force(m, columns);
-          add_work(m, sum);
-        },
-        [&](std::size_t first, std::size_t count) {
-          kernel_.give_forces(values_from(first), count, columns.force + column_[first], sum);
-        });
-    return energy_of(sum);
+    return give_visited(columns, [this](auto one, auto run) { visit_runs(one, run); });
   }
   StepEnergy work;
   visit_active([&](std::size_t m) {

@@ -150,6 +150,10 @@ class SetPairs {
   void visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept;
   template <class VisitOne, class VisitRun>
   void visit_chunk(std::size_t chunk, VisitOne visit_one, VisitRun visit_run) const noexcept;
+  template <class Visit>
+  StepEnergy take_visited(const ForceColumns& columns, Visit visit) noexcept;
+  template <class Visit>
+  StepEnergy give_visited(const ForceColumns& columns, Visit visit) noexcept;
   std::size_t run_at(std::size_t place) const noexcept;
   MemberValues values_from(std::size_t member) noexcept;
   bool computes_all(const std::vector<bool>& never_rests) const noexcept {

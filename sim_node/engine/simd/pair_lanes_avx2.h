@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim_node/engine/simd/lanes_avx2.h"
+#include "sim_node/engine/simd/sum_columns.h"
 
 namespace cordis::engine {
 namespace {
@@ -44,18 +45,8 @@ struct Avx2PairLanes : Avx2Lanes {
   }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
-    const Row x04 = x[0] + x[1];  // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7
-    const Row y04 = y[0] + y[1];
-    const Row z04 = z[0] + z[1];
-    const Row w04 = w[0] + w[1];
-    const Row even_xy = _mm256_unpacklo_pd(x04, y04);
-    const Row odd_xy = _mm256_unpackhi_pd(x04, y04);
-    const Row even_zw = _mm256_unpacklo_pd(z04, w04);
-    const Row odd_zw = _mm256_unpackhi_pd(z04, w04);
-    return (_mm256_permute2f128_pd(even_xy, even_zw, 0x20) +
-            _mm256_permute2f128_pd(even_xy, even_zw, 0x31)) +
-           (_mm256_permute2f128_pd(odd_xy, odd_zw, 0x20) +
-            _mm256_permute2f128_pd(odd_xy, odd_zw, 0x31));
+    // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7 of each
+    return sum_columns(x[0] + x[1], y[0] + y[1], z[0] + z[1], w[0] + w[1]);
   }
 
   static void pack(double* out, Row v, unsigned chosen) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sim_node/engine/simd/lanes_avx512.h"
+#include "sim_node/engine/simd/sum_columns.h"
 
 namespace cordis::engine {
 namespace {
@@ -39,18 +40,8 @@ struct Avx512PairLanes : Avx512Lanes {
   }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
-    const Column x04 = sum_halves(*x);  // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7
-    const Column y04 = sum_halves(*y);
-    const Column z04 = sum_halves(*z);
-    const Column w04 = sum_halves(*w);
-    const Column even_xy = _mm256_unpacklo_pd(x04, y04);
-    const Column odd_xy = _mm256_unpackhi_pd(x04, y04);
-    const Column even_zw = _mm256_unpacklo_pd(z04, w04);
-    const Column odd_zw = _mm256_unpackhi_pd(z04, w04);
-    return (_mm256_permute2f128_pd(even_xy, even_zw, 0x20) +
-            _mm256_permute2f128_pd(even_xy, even_zw, 0x31)) +
-           (_mm256_permute2f128_pd(odd_xy, odd_zw, 0x20) +
-            _mm256_permute2f128_pd(odd_xy, odd_zw, 0x31));
+    // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7 of each
+    return sum_columns(sum_halves(*x), sum_halves(*y), sum_halves(*z), sum_halves(*w));
   }
 
   static void pack(double* out, Row v, unsigned chosen) noexcept {

@@ -60,7 +60,8 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
 /// the reach.
 double energy_at(const Reach& reach);
 
-/// The energy with which two MATs approach each other [J]: beside a port that of the reach, and the speed of the port on top.
+/// The energy with which two MATs approach each other [J]: that of the reach, and beside a port with its speed on
+/// top.
 double approach_energy(const Reach& reach) noexcept;
 
 /// The most that forces that last bring in while a liaison gives way so far [J]: twice, for a driven one may turn
