@@ -39,6 +39,7 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   state_->port_inputs.begin(state_->mats);
   if (state_->laws_ask_for_variables || state_->drives_ask_for_variables) {
     read_variables(state_->description().variables, *this, state_->table.variables());
+    state_->take_parameters();
   }
   // The masses are where the network has them, and no integrator knows their velocities yet.
   state_->port_inputs.find_driven_forces(0, state_->table.variables().data());
@@ -104,6 +105,7 @@ StepReport World::step() noexcept {
   const FloatMode mode;
   if (state_->laws_ask_for_variables) state_->table.keep_variables();
   read_variables(network().description().variables, *this, state_->table.variables());
+  if (state_->laws_ask_for_variables) state_->table.find_parameters();
   return state_->step();
 }
 

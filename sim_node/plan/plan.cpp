@@ -98,7 +98,7 @@ struct ModalLoad {
 /// What a liaison surely adds to a block of modes: K + 2 Z / dt, of one with states as it acts at the start.
 double surely_as_stiff(const engine::NetworkDescription& network, const Edge& edge) {
   if (edge.liaison.kind != LiaisonKind::kStateLink) {
-    return edge.stiffness + 2.0 * edge.viscosity / network.step;
+    return edge.stiffness - edge.variation + 2.0 * edge.viscosity / network.step;
   }
   const engine::StateLink& link = network.state_links[edge.liaison.index];
   const Tangent tangent =
@@ -142,7 +142,7 @@ ModalLoad modal_load(const engine::NetworkDescription& network, const LiaisonGra
 
 /// Certain at the step of the network alone; for others as if the block bore 1 / dt^2.
 Stability stability_of_modes(const engine::NetworkDescription& network, LiaisonGraph graph) {
-  graph.set_step(network, network.step);
+  graph.set_step(network.step);
   const ModalLoad load = modal_load(network, graph);
   Stability stability;
   stability.certified = load.worst;
@@ -383,7 +383,7 @@ double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGrap
   if (network.integrator == engine::IntegratorKind::kImplicit) {
     weights.link_stiffness = weights.stiffness;
   }
-  graph.set_step(network, network.step);
+  graph.set_step(network.step);
   graph = weighted(std::move(graph), weights);
   std::ranges::fill(graph.medium_viscosity, 0.0);
   for (Edge& edge : graph.edges) edge.viscosity = 0.0;

@@ -2,10 +2,12 @@
 #include "sim_node/plan/settle.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "node/assert.h"
 #include "sim_node/engine/world.h"
@@ -41,6 +43,52 @@ void stop_time(engine::Law& law) {
     if (instruction.operation == engine::Operation::kVariable)
       instruction = {engine::Operation::kConstant, {}, 0.0, 0};
   }
+}
+
+/// A parameter as it is at step 0. Precondition: it asks for no variable but the time.
+double at_start(const engine::Program& formula, const std::vector<double>& zeros) {
+  const double value = engine::value_of({formula.code.data(), formula.code.size(), zeros.data()});
+  return std::isfinite(value) ? value : 0.0;
+}
+
+/// Puts the formulas of the one state of a state machine to numbers, but for K.
+void stop_formulas(engine::StateMachine& state_machine, const std::vector<double>& zeros) {
+  engine::LinkState& state = state_machine.states.front();
+  engine::Friction& friction = state_machine.friction;
+  for (const auto& [parameter, formula] : state.formulas) {
+    const double value = at_start(formula, zeros);
+    switch (parameter) {
+      case engine::Parameter::kRestAngle:
+        state.rest_angle = value;
+        break;
+      case engine::Parameter::kStaticFriction:
+        friction.static_coefficient = std::max(value, 0.0);
+        break;
+      case engine::Parameter::kKineticFriction:
+        friction.kinetic_coefficient = std::max(value, 0.0);
+        break;
+      case engine::Parameter::kDepth:
+        std::get<engine::LennardJones>(state.elasticity).well_depth = std::max(value, 0.0);
+        break;
+    }
+  }
+  state.formulas.clear();
+  friction.kinetic_coefficient =
+      std::min(friction.kinetic_coefficient, friction.static_coefficient);
+}
+
+/// Gives a bend the stiffness and the rest angle of step 0, of a state machine without formulas.
+void stop_time(engine::Bend& bend, std::vector<engine::StateMachine>& state_machines,
+               const std::vector<double>& zeros) {
+  if (!bend.has_states()) return;
+  engine::LinkState& state = state_machines[bend.state_machine].states.front();
+  if (is_product(state.elasticity, engine::Quantity::kElongation)) {
+    const auto& law = std::get<engine::Expression>(state.elasticity);
+    const std::size_t size = law.factor_size(engine::Quantity::kElongation);
+    state.stiffness = std::max(state.stiffness + law.factor(size, zeros.data()), 0.0);
+    state.elasticity = engine::NoLaw{};
+  }
+  if (state.rest_angle) bend.rest_angle = *state.rest_angle;
 }
 
 /// A driven force as it is at step 0 on a MAT at rest, wherever that is. Precondition: it asks for no variable
@@ -80,16 +128,20 @@ NetworkDescription undamped(NetworkDescription network, bool has_friction) {
   }
   for (engine::Link& link : network.links) link.viscosity = 0.0;
   for (engine::Bend& bend : network.bends) bend.viscosity = 0.0;
+  const std::vector<double> zeros(network.variables.size(), 0.0);
   for (engine::StateMachine& state_machine : network.state_machines) {
     state_machine = start_state_alone(state_machine);
+    stop_formulas(state_machine, zeros);
     state_machine.friction.viscosity = 0.0;
     if (!has_friction) state_machine.friction = {};
     for (engine::LinkState& state : state_machine.states) {
       state.viscosity = 0.0;
       state.dissipation = engine::NoLaw{};
-      stop_time(state.elasticity);
     }
   }
+  for (engine::Bend& bend : network.bends) stop_time(bend, network.state_machines, zeros);
+  for (engine::StateMachine& state_machine : network.state_machines)
+    stop_time(state_machine.states.front().elasticity);
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     if (link.start_force == 0.0) continue;
     const auto constant = static_cast<std::uint32_t>(network.state_machines.size());
@@ -257,9 +309,12 @@ bool rest_is_open(const NetworkDescription& network) {
     });
   };
   const auto asks_for_more = [&is_open](const engine::StateMachine& machine) {
-    const auto* expression =
-        std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
-    return expression != nullptr && is_open(expression->program);
+    const engine::LinkState& state = machine.states[machine.start];
+    const auto* expression = std::get_if<engine::Expression>(&state.elasticity);
+    return (expression != nullptr && is_open(expression->program)) ||
+           std::ranges::any_of(state.formulas, [&is_open](const engine::ParameterFormula& each) {
+             return is_open(each.formula);
+           });
   };
   return std::ranges::any_of(network.state_machines, asks_for_more) ||
          std::ranges::any_of(network.time_functions, [&is_open](const engine::TimeFunction& f) {

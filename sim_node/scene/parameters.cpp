@@ -54,9 +54,28 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
+/// The state machine of a link; none where it has numbers of its own.
+std::optional<std::uint32_t> state_machine_of(const engine::NetworkDescription& network,
+                                              LinkKind kind, std::uint32_t link) {
+  switch (kind) {
+    case LinkKind::kLinear:
+      break;
+    case LinkKind::kState:
+      return network.state_links[link].state_machine;
+    case LinkKind::kMaxwell:
+      if (network.maxwell_links[link].follows_variables())
+        return network.maxwell_links[link].state_machine;
+      break;
+    case LinkKind::kBend:
+      if (network.bends[link].has_states()) return network.bends[link].state_machine;
+      break;
+  }
+  return std::nullopt;
+}
+
 bool has_states(const engine::NetworkDescription& network, const LinkGroup& group) {
-  if (group.kind != LinkKind::kBend) return group.kind == LinkKind::kState;
-  return group.count > 0 && network.bends[group.first].has_states();
+  if (group.kind == LinkKind::kState) return true;
+  return group.count > 0 && state_machine_of(network, group.kind, group.first).has_value();
 }
 
 /// The parameters that links of a group may override.
@@ -229,20 +248,17 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   std::vector<std::string> words;
   std::set<std::uint32_t> state_machines;
   std::vector<Change> plain;  // of links without a liaison
-  std::vector<bool> is_own(network.state_links.size(), false);
-  std::vector<bool> is_own_bend(network.bends.size(), false);
+  std::map<LinkKind, std::vector<bool>> is_own{
+      {LinkKind::kState, std::vector<bool>(network.state_links.size(), false)},
+      {LinkKind::kMaxwell, std::vector<bool>(network.maxwell_links.size(), false)},
+      {LinkKind::kBend, std::vector<bool>(network.bends.size(), false)}};
   for (const LinkGroup& group : scene.link_groups) {
     if (!is_of(group, name)) continue;
     add_words(words, parameters_of_group(group, scene));
-    if (group.kind == LinkKind::kState) {
+    if (has_states(network, group)) {
       for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
-        state_machines.insert(network.state_links[l].state_machine);
-        is_own[l] = true;
-      }
-    } else if (has_states(network, group)) {
-      for (std::uint32_t l = group.first; l < group.first + group.count; ++l) {
-        state_machines.insert(network.bends[l].state_machine);
-        is_own_bend[l] = true;
+        state_machines.insert(*state_machine_of(network, group.kind, l));
+        is_own[group.kind][l] = true;
       }
     } else if (!group.liaison.empty()) {
       target.groups.push_back(&group);
@@ -268,12 +284,12 @@ Outcome Parameters::set_of_links(const std::string& name, const std::string& par
   if (!plain.empty() && value < 0.0) return refused("'" + parameter + "' must be >= 0");
 
   bool shared = false;
-  for (std::size_t l = 0; l < network.state_links.size(); ++l)
-    shared =
-        shared || (!is_own[l] && state_machines.count(network.state_links[l].state_machine) != 0);
-  for (std::size_t l = 0; l < network.bends.size(); ++l)
-    shared = shared || (!is_own_bend[l] && network.bends[l].has_states() &&
-                        state_machines.count(network.bends[l].state_machine) != 0);
+  for (const auto& [kind, is_own_link] : is_own) {
+    for (std::uint32_t l = 0; l < is_own_link.size(); ++l) {
+      const auto machine = state_machine_of(network, kind, l);
+      shared = shared || (!is_own_link[l] && machine && state_machines.count(*machine) != 0);
+    }
+  }
   for (std::size_t s = 0; s < network.sets.size(); ++s)
     shared = shared || (scene.set_names[s] != name &&
                         state_machines.count(network.sets[s].state_machine) != 0);

@@ -38,7 +38,8 @@ class SceneWriter {
         random_of_parameters_(seed ^ 0x68e31da4U),
         random_of_still_matter_(seed ^ 0x9e3779b9U),
         random_of_hollows_(seed ^ 0x94d049bbU),
-        random_of_rest_(seed ^ 0xbf58476dU) {
+        random_of_rest_(seed ^ 0xbf58476dU),
+        random_of_formulas_(seed ^ 0xff51afd7U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -60,6 +61,7 @@ class SceneWriter {
     if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
     if (matter_ == Matter::kAnything) perhaps_add_changing_link();
+    if (matter_ == Matter::kAnything) perhaps_add_formulas();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
@@ -742,13 +744,15 @@ step: {{rate_hz: {}, integrator: {}{}}}
   }
 
   /// A number about 1 that changes, above 0 or not.
-  std::string changing_number() {
-    const auto between = [this](double low, double high) {
-      return low + (high - low) * static_cast<double>(random_of_parameters_()) / 4294967296.0;
+  std::string changing_number() { return changing_number(random_of_parameters_); }
+
+  static std::string changing_number(std::mt19937& random) {
+    const auto between = [&random](double low, double high) {
+      return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
     };
     const double swing = between(-0.9, 0.9);
     const double rate = std::pow(10.0, between(0.0, 3.0));
-    switch (random_of_parameters_() % 7) {
+    switch (random() % 7) {
       case 0:
       case 1:
         return fmt::format("(1 + {:.3g} * sin({:.4g} * time_s))", swing, rate);
@@ -785,6 +789,49 @@ step: {{rate_hz: {}, integrator: {}{}}}
     }
     liaisons_ += "  changing: {kind: " + kind + ", " + keys + "}\n";
     links_ += "  - {liaison: changing, between: [wall, \"p[0]\"]}\n";
+  }
+
+  /// In a sixth of the scenes a Maxwell element, a bend and a liaison of sets whose parameters follow time or
+  /// signals, each or not.
+  void perhaps_add_formulas() {
+    const auto between = [this](double low, double high) {
+      return low + (high - low) * static_cast<double>(random_of_formulas_()) / 4294967296.0;
+    };
+    const auto changing = [this](double number) {
+      return fmt::format("\"{:.4g} * {}\"", number, changing_number(random_of_formulas_));
+    };
+    if (between(0.0, 1.0) > 1.0 / 6.0) return;
+    if (between(0.0, 1.0) < 0.6) {
+      const double stiffness = 5.0 * std::pow(600.0, between(0.0, 1.0));
+      const double viscosity = std::pow(1e4, between(-0.8, 0.2));
+      const std::string k = changing(stiffness);
+      liaisons_ += fmt::format(
+          "  creeps: {{kind: maxwell, stiffness_n_per_m: {}, viscosity_n_s_per_m: {}}}\n", k,
+          changing(viscosity));
+      links_ += "  - {liaison: creeps, between: [wall, \"p[0]\"]}\n";
+    }
+    if (between(0.0, 1.0) < 0.6 && !freezes_ && count_ > 1) {
+      const double stiffness = std::pow(1e3, between(-1.0, 0.0));
+      std::string keys = "stiffness_n_m_per_rad: " + changing(stiffness);
+      if (between(0.0, 1.0) < 0.5)
+        keys += ", viscosity_n_m_s_per_rad: " + changing(std::pow(1e3, between(-2.0, -1.0)));
+      if (between(0.0, 1.0) < 0.5 && space_ < 3) keys += ", rest_rad: " + changing(0.3);
+      liaisons_ += "  flexes: {kind: bending, length_m: 0.2, " + keys + "}\n";
+      links_ += "  - {liaison: flexes, between: [wall, \"p[0]\", \"p[1]\"]}\n";
+    }
+    if (between(0.0, 1.0) < 0.7 && count_ > 1) {
+      const double stiffness = 5.0 * std::pow(600.0, between(0.0, 1.0));
+      std::string keys = "pulls: false, stiffness_n_per_m: " + changing(stiffness);
+      if (between(0.0, 1.0) < 0.5)
+        keys += ", viscosity_n_s_per_m: " + changing(std::pow(1e4, between(-0.9, 0.0)));
+      if (between(0.0, 1.0) < 0.3) keys += fmt::format(", force_limit_n: {:.4g}", 0.02 * stiffness);
+      if (may_rub_ && between(0.0, 1.0) < 0.5) {
+        keys += fmt::format(", friction: {{static: {}, stiffness_n_per_m: {:.4g}}}",
+                            changing(between(0.1, 1.0)), stiffness);
+      }
+      liaisons_ += "  yields: {" + keys + "}\n";
+      links_ += "  - {liaison: yields, within: p, rest_m: 0.1, range_m: 0.1}\n";
+    }
   }
 
   double crowd_between(double low, double high) {
@@ -1232,6 +1279,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_still_matter_;  // likewise
   std::mt19937 random_of_hollows_;       // likewise
   std::mt19937 random_of_rest_;          // likewise
+  std::mt19937 random_of_formulas_;      // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses

@@ -116,15 +116,6 @@ matter:
                  ""},
         BadScene{kHead2,
                  R"(liaisons:
-  l: {kind: maxwell, stiffness_n_per_m: "2 + ^time_s", viscosity_n_s_per_m: 3}
-matter:
-  m: {kind: mass, mass_kg: 1, at_m: [0, 0]}
-)",
-                 "'stiffness_n_per_m' in liaison 'l' names 'time_s', which is no quantity and no "
-                 "parameter",
-                 ""},
-        BadScene{kHead2,
-                 R"(liaisons:
   l: {elasticity: elongation_m * (m.position_x_m + ^m.positon_y_m)}
 matter:
   f: {kind: fixed, at_m: [1, 0]}
@@ -134,17 +125,6 @@ links:
 )",
                  "a MAT has no quantity 'positon_y_m' that others may ask for",
                  "did you mean 'position_y_m'?"},
-        BadScene{kHead2,
-                 R"(liaisons:
-  l: {kind: spring, stiffness_n_per_m: "2 + time_s", rest_m: 0.1}
-matter:
-  m: {kind: mass, mass_kg: 1, at_m: [[0, 0], [1, 0]]}
-links:
-  - {liaison: ^l, within: m, range_m: 0.1}
-)",
-                 "a law of a liaison of sets asks for nothing outside its pair, and the liaison "
-                 "'l' does",
-                 "write its parameters as numbers, or link the MATs one by one"},
         BadScene{kHead2,
                  R"(liaisons:
   l: {kind: spring, stiffness_n_per_m: 2, rest_m: "0.1 * time_s"}

@@ -66,6 +66,10 @@ class Fingerprint {
     add(state.last_exit);
     if (state.friction) add(*state.friction);
     if (state.rest_angle) add(*state.rest_angle);
+    for (const ParameterFormula& each : state.formulas) {
+      add(static_cast<std::uint64_t>(each.parameter));
+      add_all(each.formula.code);
+    }
   }
   void add(const Friction& friction) {
     for (const double value : {friction.static_coefficient, friction.kinetic_coefficient,
@@ -97,6 +101,7 @@ class Fingerprint {
     add(link.stiffness);
     add(link.viscosity);
     add(link.start_force);
+    if (link.follows_variables()) add(link.state_machine);
   }
   void add(const Bend& bend) {
     for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) add(mat);

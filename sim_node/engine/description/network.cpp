@@ -93,13 +93,22 @@ void check_state_link(const NetworkDescription& description, const StateLink& li
 void check_maxwell_link(const NetworkDescription& description, const MaxwellLink& link,
                         const std::string& name) {
   check_ends(description, link, name);
+  require(std::isfinite(link.start_force), name + ": start force", "finite");
+  if (link.follows_variables()) {
+    require(link.state_machine < description.state_machines.size(), name + ": state machine",
+            "one of the network");
+    require(link.stiffness == 0.0 && link.viscosity == 0.0, name + ": stiffness and viscosity",
+            "those of its state machine");
+    require(fits_maxwell_element(description.state_machines[link.state_machine]),
+            name + ": state machine", "one state with a stiffness and a viscosity");
+    return;
+  }
   require(std::isfinite(link.stiffness) && link.stiffness > 0.0, name + ": stiffness",
           "finite and > 0");
   require(std::isfinite(link.viscosity) && link.viscosity > 0.0, name + ": viscosity",
           "finite and > 0");
   require(std::isfinite(link.viscosity / description.step), name + ": viscosity",
           "small enough for the step");
-  require(std::isfinite(link.start_force), name + ": start force", "finite");
 }
 
 void check_bend_states(const NetworkDescription& description, const Bend& bend,
@@ -118,8 +127,11 @@ void check_bend_states(const NetworkDescription& description, const Bend& bend,
             name + ": stiffness and viscosity", "small enough for its rest lengths and the step");
   }
   if (description.dimension < 3) return;
-  for (const LinkState& state : state_machine.states)
-    require(state.rest_angle.value_or(0.0) == 0.0, name + ": rest angle", "0 in 3 dimensions");
+  for (const LinkState& state : state_machine.states) {
+    require(state.rest_angle.value_or(0.0) == 0.0 &&
+                formula_of(state, Parameter::kRestAngle) == nullptr,
+            name + ": rest angle", "0 in 3 dimensions");
+  }
   for (const Transition& exit : state_machine.exits)
     require(exit.rest == RestRule::kKeep, name + ": rest angle", "kept in 3 dimensions");
 }
@@ -240,8 +252,6 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   check_states(description, set.state_machine, name);
   require(description.dimension > 1 || !rubs(description.state_machines[set.state_machine]),
           name + ": friction", "left out in 1 dimension, which has no direction to slide in");
-  require(!laws_ask_for_variable(description.state_machines[set.state_machine]),
-          name + ": its laws", "ones that ask for no variable of the network");
   require(!set.set_p.empty(), name + ": set P", "one of at least 1 MAT");
   require(std::isfinite(set.range) && set.range > 0.0, name + ": range", "finite and > 0");
   require(std::isfinite(set.rest_length), name + ": rest length", "finite");

@@ -70,12 +70,20 @@ struct StateLink {
 ///
 /// exact while the elongation rate is steady; F(0) is the start force, whatever the speed of the
 /// ends. A Maxwell element and a Link in parallel are a standard linear solid.
+///
+/// K and Z may follow variables of the network, as those of a state machine of one state. The spring keeps its
+/// elongation F / K, so that F(n-1) counts K(n) / K(n-1) times, and K / Z in e^(-K dt / Z) is the mean of both
+/// steps. A K that is not above 0 has no force, but the spring keeps its elongation; nor has such a Z.
 struct MaxwellLink {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  double stiffness = 0.0;    ///< K [N/m], > 0
-  double viscosity = 0.0;    ///< Z [N s/m], > 0
-  double start_force = 0.0;  ///< F(0) [N], any finite value; > 0 pulls the ends together
+  double stiffness = 0.0;               ///< K [N/m], > 0; 0 with a state machine
+  double viscosity = 0.0;               ///< Z [N s/m], > 0; 0 with a state machine
+  double start_force = 0.0;             ///< F(0) [N], any finite value; > 0 pulls the ends together
+  std::uint32_t state_machine = kNone;  ///< index in NetworkDescription::state_machines, or kNone
+
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  bool follows_variables() const noexcept { return state_machine != kNone; }
 };
 
 /// One LIA of three MATs that resists bending at the middle one, b. With u from a to b, v from b to c, and

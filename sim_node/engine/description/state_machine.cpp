@@ -55,6 +55,25 @@ void check_friction(const Friction& friction, const std::string& name) {
           name + ": static coefficient", "finite and not below the kinetic one");
 }
 
+void check_formulas(const LinkState& state, const std::string& name, std::size_t variable_count) {
+  std::vector<Parameter> known;
+  for (const auto& [parameter, formula] : state.formulas) {
+    require(parameter <= Parameter::kDepth, name + ": parameter of a formula", "a known one");
+    require(std::ranges::find(known, parameter) == known.end(), name + ": formulas",
+            "one of each parameter");
+    known.push_back(parameter);
+    const auto asks_for_link = [](const Instruction& instruction) {
+      return instruction.operation == Operation::kQuantity;
+    };
+    check_program(formula, name + ": formula", variable_count);
+    require(!has_edge(formula) && std::ranges::none_of(formula.code, asks_for_link),
+            name + ": formula", "one of variables alone");
+    require(
+        parameter != Parameter::kDepth || std::holds_alternative<LennardJones>(state.elasticity),
+        name + ": formula of a depth", "one beside Lennard-Jones");
+  }
+}
+
 void check_state(const StateMachine& state_machine, const LinkState& state, const std::string& name,
                  std::size_t variable_count) {
   require(is_finite_and_at_least_zero(state.stiffness), name + ": stiffness", "finite and >= 0");
@@ -65,6 +84,7 @@ void check_state(const StateMachine& state_machine, const LinkState& state, cons
   if (state.friction) check_friction(*state.friction, name + ": friction");
   require(!state.rest_angle || std::abs(*state.rest_angle) < kMaxRestAngle, name + ": rest angle",
           "within 3.2 rad of 0");
+  check_formulas(state, name, variable_count);
   require(state.first_exit <= state.last_exit && state.last_exit <= state_machine.exits.size(),
           name + ": exits", "a range of the exits of the state machine");
   std::vector<bool> used(kMaxSlots, false);
@@ -85,13 +105,35 @@ const Friction& friction_in(const StateMachine& state_machine, std::size_t state
   return own ? *own : state_machine.friction;
 }
 
+const Program* formula_of(const LinkState& state, Parameter parameter) noexcept {
+  const auto known = std::ranges::find(state.formulas, parameter, &ParameterFormula::parameter);
+  return known == state.formulas.end() ? nullptr : &known->formula;
+}
+
+namespace {
+
+/// What keeps a state from having a stiffness and a viscosity alone; nullptr: nothing does.
+const char* beyond_linear(const LinkState& state) noexcept {
+  if (!is_none(state.elasticity) && !is_product(state.elasticity, Quantity::kElongation))
+    return "elasticity";
+  if (!is_none(state.dissipation) && !is_product(state.dissipation, Quantity::kSpeed))
+    return "dissipation";
+  if (!state.pulls || !state.pushes) return "pulls and pushes";
+  return std::isinf(state.force_limit) ? nullptr : "a force limit";
+}
+
+}  // namespace
+
+bool fits_maxwell_element(const StateMachine& state_machine) noexcept {
+  return state_machine.is_stateless() && !rubs(state_machine) &&
+         beyond_linear(state_machine.states[0]) == nullptr &&
+         state_machine.states[0].formulas.empty();
+}
+
 const char* refused_in_bends(const StateMachine& state_machine) noexcept {
   if (rubs(state_machine)) return "friction";
   for (const LinkState& state : state_machine.states) {
-    if (!is_none(state.elasticity)) return "elasticity";
-    if (!is_none(state.dissipation)) return "dissipation";
-    if (!state.pulls || !state.pushes) return "pulls and pushes";
-    if (!std::isinf(state.force_limit)) return "a force limit";
+    if (const char* const refused = beyond_linear(state)) return refused;
   }
   const auto asks_for_link = [](const Program& program) {
     return std::ranges::any_of(program.code, [](const Instruction& instruction) {
@@ -123,7 +165,10 @@ bool rubs(const StateMachine& state_machine) noexcept {
 }
 
 bool asks_for_variable(const LinkState& state) noexcept {
-  return asks_for_variable(state.elasticity) || asks_for_variable(state.dissipation);
+  return asks_for_variable(state.elasticity) || asks_for_variable(state.dissipation) ||
+         std::ranges::any_of(state.formulas, [](const ParameterFormula& each) {
+           return asks_for_variable(each.formula);
+         });
 }
 
 bool laws_ask_for_variable(const StateMachine& state_machine) noexcept {
@@ -157,8 +202,9 @@ void check_state_machine(const StateMachine& state_machine, const std::string& n
 double touch_distance(const StateMachine& state_machine) noexcept {
   const LinkState& state = state_machine.states.front();
   const bool is_bare = state_machine.is_stateless() && state.stiffness == 0.0 &&
-                       state.viscosity == 0.0 && is_none(state.dissipation) && state.pulls &&
-                       state.pushes && std::isinf(state.force_limit);
+                       state.formulas.empty() && state.viscosity == 0.0 &&
+                       is_none(state.dissipation) && state.pulls && state.pushes &&
+                       std::isinf(state.force_limit);
   const auto* law = std::get_if<LennardJones>(&state.elasticity);
   if (!is_bare || law == nullptr) return std::numeric_limits<double>::infinity();
   return law->diameter * std::pow(26.0 / 7.0, 1.0 / 6.0);

@@ -32,6 +32,21 @@ struct Friction {
   friend bool operator==(const Friction&, const Friction&) = default;
 };
 
+/// What else than a stiffness and a viscosity a formula may change in a state.
+enum class Parameter : std::uint8_t {
+  kRestAngle,        ///< rest angle of a bend; it comes before any other
+  kStaticFriction,   ///< coefficient of the friction in this state
+  kKineticFriction,  ///< likewise; at most the static one
+  kDepth             ///< LennardJones::well_depth of its elasticity
+};
+
+/// A parameter that follows variables of the network. A value below 0 counts as 0, but for an angle; one
+/// that is not finite as 0, and an angle then stays what it was.
+struct ParameterFormula {
+  Parameter parameter = Parameter::kRestAngle;
+  Program formula;  ///< asks for variables alone
+};
+
 /// A state describer: the parameters of the liaison while it is in this state.
 ///
 ///     tension = K e + elasticity + Z v + dissipation
@@ -40,7 +55,8 @@ struct Friction {
 /// together; then without its positive part unless `pulls`, without its negative part unless
 /// `pushes`, then within +- force_limit. In the step in which the state is entered the delayed
 /// distance is the present one: v is 0, and no viscosity answers to what happened before. It stores
-/// the integral of K e + elasticity, within +- force_limit where there is one.
+/// the integral of K e + elasticity, within +- force_limit where there is one. A stiffness that follows variables
+/// is an elasticity of that factor times e, a viscosity a dissipation of that factor times v.
 struct LinkState {
   std::string name;
   double stiffness = 0.0;  ///< K [N/m], >= 0
@@ -53,6 +69,7 @@ struct LinkState {
   std::optional<Friction> friction{};  ///< its own; without one that of the state machine
   /// Rest angle that a bend takes as it enters the state, unless the exit has a rule [rad].
   std::optional<double> rest_angle{};
+  std::vector<ParameterFormula> formulas{};  ///< what they change is 0 here; at most one of each
   std::uint32_t first_exit = 0;  ///< its exits are State machine::exits[first_exit, last_exit)
   std::uint32_t last_exit = 0;
 };
@@ -94,6 +111,10 @@ const Friction& friction_in(const StateMachine& state_machine, std::size_t state
 
 /// What a bend cannot have in a state: `elasticity` and so on; nullptr when it takes all of it.
 const char* refused_in_bends(const StateMachine& state_machine) noexcept;
+/// True if a Maxwell element takes K and Z from it: one state, with these two alone.
+bool fits_maxwell_element(const StateMachine& state_machine) noexcept;
+/// The formula of a parameter in a state; null without one.
+const Program* formula_of(const LinkState& state, Parameter parameter) noexcept;
 /// True if a program of it asks for a quantity of an angle.
 bool asks_for_angle(const StateMachine& state_machine) noexcept;
 
@@ -108,12 +129,12 @@ double touch_distance(const StateMachine& state_machine) noexcept;
 /// The most states a state machine may have.
 inline constexpr std::size_t kMaxStates = 64;
 
-/// True if a law of a state asks for a variable of the network: then its force may change whatever its own
-/// link does.
+/// True if a law or a formula of a state asks for a variable of the network: then its force may change whatever
+/// its own link does.
 bool asks_for_variable(const LinkState& state) noexcept;
 /// True if a law of any of its states does.
 bool laws_ask_for_variable(const StateMachine& state_machine) noexcept;
-/// True if a condition or a law asks for a variable of the network.
+/// True if a condition, a law or a formula asks for a variable of the network.
 bool asks_for_variable(const StateMachine& state_machine) noexcept;
 
 /// @param variable_count  how many variables its conditions and laws may ask for

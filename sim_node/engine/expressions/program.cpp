@@ -109,6 +109,12 @@ bool has_edge(const Program& program) noexcept {
                      [](const Instruction& each) { return is_edge(each.operation); });
 }
 
+double value_of(const ProgramTerm& program) noexcept {
+  static constexpr std::array<const double*, kQuantityCount> kNothing{};
+  ProgramLoop<ScalarLanes> loop;
+  return loop.evaluate(program, {kNothing.data(), nullptr}, 0)[0];
+}
+
 double value_of(const Program& program, const LinkQuantities& now, const LinkQuantities* before,
                 double edge, const double* variables) noexcept {
   CORDIS_ASSERT(variables != nullptr || !asks_for_variable(program));

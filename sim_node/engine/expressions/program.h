@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/engine/expressions/instruction.h"
+#include "sim_node/engine/expressions/program_term.h"
 
 namespace cordis::engine {
 
@@ -43,6 +44,10 @@ bool has_edge(const Program& program) noexcept;
 
 /// What a program may ask of a link, by Quantity.
 using LinkQuantities = std::array<double, kQuantityCount>;
+
+/// The value of a program that asks for variables alone; NaN without them. Precondition: well-formed. Real time:
+/// no allocation.
+double value_of(const ProgramTerm& program) noexcept;
 
 /// The value of a program for one link. Precondition: well-formed, and asks for no variable without
 /// `variables`.

@@ -17,6 +17,7 @@ const char* not_a_potential(const StateMachine& state_machine) {
   if (state.viscosity > 0.0 || !is_none(state.dissipation)) return "viscosity";
   if (std::isfinite(state.force_limit)) return "a force limit";
   if (!stores_energy(state.elasticity)) return "a free expression";
+  if (!state.formulas.empty()) return "a parameter that follows a formula";
   return nullptr;
 }
 

@@ -77,7 +77,7 @@ WorldState::WorldState(std::shared_ptr<const Network> network_of_world, VectorWi
       vector_springs(description(), SpringDamperArray::Kind::kVectorSpring, mats.layout(), blocks),
       table(make_table(description().state_machines)),
       state_links(description(), table, blocks),
-      maxwell_links(description(), blocks),
+      maxwell_links(description(), table, blocks),
       bends(description(), table, blocks),
       sets(description(), table, pair_kernel(width)),
       log(table,
@@ -190,8 +190,17 @@ StepEnergy WorldState::begin_forces(const ForceColumns& columns) noexcept {
 }
 
 StepEnergy WorldState::add_maxwell_forces(const ForceColumns& columns) noexcept {
-  return step_count == 0 ? maxwell_links.add_first_forces(state_machines, columns)
-                         : maxwell_links.add_forces(state_machines, columns, *team);
+  if (step_count == 0) return maxwell_links.add_first_forces(state_machines, columns);
+  const double switching = maxwell_links.follow(table, columns);
+  StepEnergy work = maxwell_links.add_forces(state_machines, columns, *team);
+  work.switching += switching;
+  return work;
+}
+
+void WorldState::take_parameters() noexcept {
+  table.find_parameters();
+  bends.take_parameters(table);
+  maxwell_links.take_parameters(table);
 }
 
 StepEnergy WorldState::add_set_forces(const ForceColumns& columns) noexcept {
@@ -249,8 +258,10 @@ double WorldState::add_forces_at_full_step(const double* extrapolated_positions,
     of_links += state_links.add_forces(state_machines, table, extrapolated, step_count, log, *team);
   }
   if (step_count == 0) maxwell_links.go_back(mats);
-  const double taken = add_maxwell_forces(as_it_moved).dissipated;
-  if (step_count > 0) energy.dissipated += taken;  // the account begins at the moment of step 0
+  const StepEnergy of_maxwell = add_maxwell_forces(as_it_moved);
+  energy.switching += of_maxwell.switching;
+  // The account begins at the moment of step 0.
+  if (step_count > 0) energy.dissipated += of_maxwell.dissipated;
   bends.forget_viscous_forces();
   of_links += bends.add_forces(state_machines, table, extrapolated, step_count, log, *team);
   of_links += of_last_sets;
@@ -280,6 +291,13 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
       refused_in_bends(state_machine) != nullptr) {
     throw std::invalid_argument("a bend has a stiffness and a viscosity in each state, no more");
   }
+  const auto takes_from_it = [index](const MaxwellLink& link) {
+    return link.state_machine == index;
+  };
+  if (std::ranges::any_of(description().maxwell_links, takes_from_it) &&
+      !fits_maxwell_element(state_machine)) {
+    throw std::invalid_argument("a Maxwell element has a stiffness and a viscosity, no more");
+  }
   if (rubs(state_machine) != rubs(table.state_machines()[index])) {
     throw std::invalid_argument("friction neither comes nor goes");
   }
@@ -287,6 +305,7 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   table.replace(index, state_machine);
   state_links.adopt(table);
   bends.adopt(table);
+  maxwell_links.take_parameters(table);
   sets.adopt(table);
   if (freezing) freezing->adopt(description(), table.state_machines());
   StepEnergy change;
@@ -306,7 +325,7 @@ Archive WorldState::serialize(Archive archive) {
   maxwell_links.serialize(archive);
   bends.serialize(archive, table);
   log.serialize(archive);
-  if (laws_ask_for_variables) archive.reals(table.variables());
+  if (!table.variables().empty()) archive.reals(table.variables());
   account.serialize(archive);
   if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last
   scheme->serialize(archive);
@@ -319,6 +338,7 @@ Archive WorldState::serialize(Archive archive) {
 void WorldState::take(std::span<const double> row) {
   CORDIS_ASSERT(matches(row));
   serialize(Archive::restoring(row));
+  if (laws_ask_for_variables) take_parameters();
   scheme->restored(*this);
   if (freezing) freezing->restored(port_inputs);
   sets.make_room(mats.force_columns().position);

@@ -49,6 +49,8 @@ struct WorldState {
   }
   /// Restores it, with all that depends on it. Precondition: it matches.
   void take(std::span<const double> row);
+  /// Fits all liaisons to the parameters that follow the variables of the table, between two steps.
+  void take_parameters() noexcept;
   StateTable make_table(std::vector<StateMachine> state_machines) const;
   /// Exchanges the table and the links that belong to it with others; of the sets only what has
   /// states in both keeps them.

@@ -160,6 +160,27 @@ double Expression::potential(const LawPoint& link) const noexcept {
   return integral_over_distance(tension, distance_of_no_potential(link), link.distance);
 }
 
+std::size_t Expression::factor_size(Quantity of) const noexcept {
+  constexpr std::size_t kOfProduct = 2;  // the quantity and the multiplication
+  if (program.code.size() <= kOfProduct) return 0;
+  const std::size_t size = program.code.size() - kOfProduct;
+  const Instruction& quantity = program.code[size];
+  const bool is_of_it = quantity.operation == Operation::kQuantity && quantity.quantity == of &&
+                        program.code.back().operation == Operation::kMultiply;
+  if (!is_of_it) return 0;
+  bool asks = false;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (program.code[i].operation == Operation::kQuantity) return 0;
+    asks = asks || program.code[i].operation == Operation::kVariable;
+  }
+  return asks ? size : 0;
+}
+
+double Expression::factor(std::size_t size, const double* variables) const noexcept {
+  const double value = value_of({program.code.data(), size, variables});
+  return std::isfinite(value) ? value : 0.0;
+}
+
 /// The largest rise between two samples.
 LawSlope Expression::largest_slope(const LawRange& range) const noexcept {
   const auto tension = [&](double argument) {

@@ -51,6 +51,11 @@ bool asks_for_variable(const Law& law) noexcept {
   return expression != nullptr && asks_for_variable(expression->program);
 }
 
+bool is_product(const Law& law, Quantity of) noexcept {
+  const auto* expression = std::get_if<Expression>(&law);
+  return expression != nullptr && expression->factor_size(of) > 0;
+}
+
 double elastic_tension(const Law& law, const LawPoint& link) noexcept {
   CORDIS_ASSERT(has_content(law));
   return std::visit(

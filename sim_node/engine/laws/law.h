@@ -59,6 +59,8 @@ void check_elasticity(const Law& law, const std::string& name, std::size_t varia
 void check_dissipation(const Law& law, const std::string& name, std::size_t variable_count = 0);
 /// True if its expression asks for a variable of the network.
 bool asks_for_variable(const Law& law) noexcept;
+/// True if it is an expression that is a product of this quantity: see Expression::factor_size().
+bool is_product(const Law& law, Quantity of) noexcept;
 
 /// The tension [N] of the elasticity of one link, with the bits that the kernels find. Precondition:
 /// checked.

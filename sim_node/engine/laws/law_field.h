@@ -18,6 +18,7 @@ struct LawField {
   const char* hint = "";          ///< for who needs another number
   bool ascends = false;           ///< a list; strictly
   bool as_many_as_first = false;  ///< a list as long as the first of the law
+  bool follows = false;           ///< a number that may follow variables of the network
 };
 
 }  // namespace cordis::engine

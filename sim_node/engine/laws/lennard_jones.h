@@ -21,7 +21,7 @@ struct LennardJones {
   template <class Self, class Visit>
   static void visit_fields(Self& law, Visit&& visit) {
     constexpr double kSmallest = 1.0e-12;  // its 12th power is still a number
-    visit(LawField{.key = "depth_j", .lowest = 0.0}, law.well_depth);
+    visit(LawField{.key = "depth_j", .lowest = 0.0, .follows = true}, law.well_depth);
     visit(LawField{.key = "diameter_m", .lowest = kSmallest, .highest = 1.0 / kSmallest},
           law.diameter);
     visit(LawField{.key = "cut_m", .lowest = 0.0, .lowest_excluded = true, .is_optional = true},

@@ -49,6 +49,7 @@ class BendStates {
 
   /// Precondition of these: the row exists.
   double rest_angle(std::uint32_t row) const noexcept { return rest_angle_[row]; }
+  void set_rest_angle(std::uint32_t row, double angle) noexcept { rest_angle_[row] = angle; }
   double moment(std::uint32_t row) const noexcept { return moment_[row]; }
   void set_moment(std::uint32_t row, double moment) noexcept { moment_[row] = moment; }
   StateIndex state_index(std::uint32_t row) const noexcept { return state_[row]; }

@@ -46,18 +46,31 @@ BendArray::BendArray(const NetworkDescription& description, const StateTable& ta
   order_ = by_group(group, blocks.group_count());
   changes_.reserve(bend_of_row_.size());
   change_of_row_.assign(bend_of_row_.size(), kNoChange);
+  following_of_row_.assign(bend_of_row_.size(), kNoChange);
+  for (std::uint32_t r = 0; r < bend_of_row_.size(); ++r) {
+    const StateMachine& machine = description.state_machines[with_states_[r].state_machine];
+    if (!laws_ask_for_variable(machine)) continue;
+    following_of_row_[r] = static_cast<std::uint32_t>(following_.size());
+    following_.push_back({bend_of_row_[r], {0.0, rows_[bend_of_row_[r]].shape}});
+  }
   adopt(table);
 }
 
 void BendArray::adopt(const StateTable& table) {
   states_.adopt(table);
+  take_parameters(table);
+}
+
+void BendArray::take_parameters(const StateTable& table) noexcept {
   for (const std::uint32_t bend : bend_of_row_) put_state(table, rows_[bend]);
 }
 
 void BendArray::put_state(const StateTable& table, Row& row) noexcept {
-  const LinkState& state = table.state(states_.state_index(row.state_row));
-  row.stiffness = state.stiffness;
-  row.viscosity_over_dt = state.viscosity / dt_;
+  const StateIndex state = states_.state_index(row.state_row);
+  row.stiffness = table.stiffness(state);
+  row.viscosity_over_dt = table.viscosity(state) / dt_;
+  if (const std::optional<double> rest = table.rest_angle(state))
+    states_.set_rest_angle(row.state_row, *rest);
   row.shape.set_rest(states_.rest_angle(row.state_row), dimension_);
 }
 
@@ -91,6 +104,38 @@ BendSides BendArray::sides_of(const Row& row, const ForceColumns& columns) noexc
           way(row.mat_b) - way(row.mat_a), way(row.mat_c) - way(row.mat_b)};
 }
 
+double BendArray::energy_of(const Row& row, const LinearLaw& law, double part,
+                            const ForceColumns& columns) noexcept {
+  const auto bend_in = [&](const double* from) {
+    return law.shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
+  };
+  const Vec3 bend = bend_in(columns.position);
+  const Vec3 moved = bend - bend_in(columns.delayed);
+  return 0.5 * law.stiffness * dot(bend, bend) - part * law.stiffness * dot(bend, moved);
+}
+
+/// In the middle of the last period, as StateTable::parameter_energy has it.
+double BendArray::follow(const StateTable& table, const ForceColumns& columns) noexcept {
+  constexpr double kMiddle = 0.5;
+  double energy = 0.0;
+  for (Following& each : following_) {
+    Row& row = rows_[each.bend];
+    each.last = {row.stiffness, row.shape};
+    put_state(table, row);
+    energy += energy_of(row, {row.stiffness, row.shape}, kMiddle, columns) -
+              energy_of(row, each.last, kMiddle, columns);
+  }
+  return energy;
+}
+
+const BendArray::LinearLaw* BendArray::last_law_of(const Row& row) const noexcept {
+  if (row.state_row == kNoRow) return nullptr;
+  if (following_of_row_[row.state_row] != kNoChange)
+    return &following_[following_of_row_[row.state_row]].last;
+  const Change* const change = change_of(row);
+  return change == nullptr ? nullptr : &change->law;
+}
+
 void BendArray::change_states(const StateKernel& kernel, const StateTable& table,
                               const ForceColumns& columns, std::uint64_t step) noexcept {
   for (std::uint32_t r = 0; r < bend_of_row_.size(); ++r) {
@@ -100,7 +145,7 @@ void BendArray::change_states(const StateKernel& kernel, const StateTable& table
   states_.step(kernel, table, step, [&](const BendChange& change) {
     Row& row = rows_[bend_of_row_[change.row]];
     change_of_row_[change.row] = static_cast<std::uint32_t>(changes_.size());
-    changes_.push_back({change, step, row.stiffness, row.shape});
+    changes_.push_back({change, step, {row.stiffness, row.shape}});
     put_state(table, row);
   });
 }
@@ -109,8 +154,10 @@ StepEnergy BendArray::add_forces(const StateKernel& kernel, const StateTable& ta
                                  const ForceColumns& columns, std::uint64_t step, EventLog& log,
                                  ThreadTeam& team) noexcept {
   if (bend_of_row_.empty()) return add_forces(columns, team);
+  const double of_parameters = follow(table, columns);
   change_states(kernel, table, columns, step);
   StepEnergy work = add_forces(columns, team);
+  work.switching += of_parameters;
   for (const Change& change : changes_) {
     work.switching += enter(table, change, columns, log);
     change_of_row_[change.of_states.row] = kNoChange;
@@ -123,16 +170,9 @@ StepEnergy BendArray::add_forces(const StateKernel& kernel, const StateTable& ta
 double BendArray::enter(const StateTable& table, const Change& change, const ForceColumns& columns,
                         EventLog& log) noexcept {
   const Row& row = rows_[bend_of_row_[change.of_states.row]];
-  const auto energy_of = [&](double stiffness, const BendShape& shape) {
-    const auto bend_in = [&](const double* from) {
-      return shape(column(from, row.mat_a), column(from, row.mat_b), column(from, row.mat_c));
-    };
-    const Vec3 bend = bend_in(columns.position);
-    const Vec3 moved = bend - bend_in(columns.delayed);
-    return 0.5 * stiffness * dot(bend, bend) - table.part_of_work() * stiffness * dot(bend, moved);
-  };
-  const double energy =
-      energy_of(row.stiffness, row.shape) - energy_of(change.stiffness, change.shape);
+  const double part = table.part_of_work();
+  const double energy = energy_of(row, {row.stiffness, row.shape}, part, columns) -
+                        energy_of(row, change.law, part, columns);
   const std::uint32_t machine = states_.state_machine(change.of_states.row);
   const StateIndex first = table.first_state(machine);
   log.add({change.step, kNoLink, row.mat_a, row.mat_c, machine, change.of_states.from - first,
@@ -158,13 +198,19 @@ StepEnergy BendArray::add_bend(std::size_t bend_index, const ForceColumns& colum
   const bool has_states = row.state_row != kNoRow;
   Vec3 moment = row.stiffness * bend;
   StepEnergy work;
-  if (const Change* const change = change_of(row)) {
-    // The force of the last step, of the law before the change, has done the first half of the way.
-    const Vec3 was = bend_in(change->shape, columns.delayed);
-    const Vec3 moved_then = bend_in(change->shape, columns.position) - was;
-    work.elastic = 0.5 * (dot(moment, moved) + change->stiffness * dot(was, moved_then));
+  if (const LinearLaw* const last = last_law_of(row)) {
+    // The force of the last step, of the law then, has done the first half of the way.
+    const Vec3 was = bend_in(last->shape, columns.delayed);
+    const Vec3 moved_then = bend_in(last->shape, columns.position) - was;
+    work.elastic = 0.5 * (dot(moment, moved) + last->stiffness * dot(was, moved_then));
     work.dissipated = 0.5 * dot(last_viscous_moment(bend_index), moved_then);
-    std::fill_n(viscous_moment_.data() + 3 * bend_index, 3, 0.0);
+    const bool enters_state = change_of(row) != nullptr;
+    const Vec3 viscous = enters_state ? Vec3(Vec3::Zero()) : viscous_moment(row, bend, moved);
+    std::copy_n(viscous.data(), 3, viscous_moment_.data() + 3 * bend_index);
+    if (!enters_state) {
+      work.dissipated += 0.5 * dot(viscous, moved);
+      moment += viscous;
+    }
   } else {
     work.elastic = 0.5 * row.stiffness * dot(bend + before, moved);
     if (row.viscosity_over_dt > 0.0 || has_states) {

@@ -49,6 +49,9 @@ class BendArray {
   void force_state(const StateTable& table, std::uint32_t bend, std::uint32_t state) noexcept;
   /// Fits the bends to a table that has been changed. Allocates.
   void adopt(const StateTable& table);
+  /// Fits them to the present parameters of the table: what these were before counts no longer. Real time:
+  /// O(bends with states), no allocation.
+  void take_parameters(const StateTable& table) noexcept;
 
   /// Precondition of these: the bend has states.
   std::uint32_t state_of(const StateTable& table, std::uint32_t bend) const noexcept {
@@ -78,12 +81,21 @@ class BendArray {
     BendShape shape;
   };
   static constexpr std::uint32_t kNoChange = 0xffffffffU;
+  /// The linear law of a bend.
+  struct LinearLaw {
+    double stiffness;  // [N m/rad]
+    BendShape shape;
+  };
   /// A change of state of this step, and the law before it.
   struct Change {
     BendChange of_states;
     std::uint64_t step;
-    double stiffness;  // [N m/rad]
-    BendShape shape;
+    LinearLaw law;
+  };
+  /// A bend whose parameters follow variables in some state, and its law in the last call.
+  struct Following {
+    std::uint32_t bend;
+    LinearLaw last;
   };
   void change_states(const StateKernel& kernel, const StateTable& table,
                      const ForceColumns& columns, std::uint64_t step) noexcept;
@@ -92,6 +104,14 @@ class BendArray {
                EventLog& log) noexcept;
   StepEnergy add_bend(std::size_t bend, const ForceColumns& columns) noexcept;
   const Change* change_of(const Row& row) const noexcept;
+  /// The law of the last call where it is not that of this one, else null.
+  const LinearLaw* last_law_of(const Row& row) const noexcept;
+  /// Takes the bends that follow variables to the parameters of this step.
+  /// @return energy that these have brought into them [J]
+  double follow(const StateTable& table, const ForceColumns& columns) noexcept;
+  /// Energy in a bend of a law, less a part of what it has taken in the last period [J].
+  static double energy_of(const Row& row, const LinearLaw& law, double part,
+                          const ForceColumns& columns) noexcept;
   static BendSides sides_of(const Row& row, const ForceColumns& columns) noexcept;
   void put_state(const StateTable& table, Row& row) noexcept;
   static void add_moment(const Row& row, const Vec3& moment, double* force) noexcept;
@@ -106,6 +126,8 @@ class BendArray {
   BendStates states_;
   std::vector<Change> changes_;               // of this step, in the order of the rows of states_
   std::vector<std::uint32_t> change_of_row_;  // of states_: place in changes_, or kNoChange
+  std::vector<Following> following_;
+  std::vector<std::uint32_t> following_of_row_;  // of states_: place in following_, or kNoChange
   LinkGroups groups_;
   GroupedOrder order_;                    // of the bends
   std::vector<StepEnergy> works_;         // of each group in this step

@@ -2,6 +2,7 @@
 #include "sim_node/engine/links/maxwell_links.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sim_node/engine/links/elongation_increment.h"
 
@@ -17,8 +18,10 @@ double share_of_decay(double x) noexcept {
   return share;
 }
 
-MaxwellArray::MaxwellArray(const NetworkDescription& description, const MatBlocks& blocks)
+MaxwellArray::MaxwellArray(const NetworkDescription& description, const StateTable& table,
+                           const MatBlocks& blocks)
     : is_1d_(description.dimension == 1),
+      dt_(description.step),
       rows_(description.maxwell_links, blocks, kStateBatch, column_a_, column_b_),
       groups_(blocks),
       velocity_retention_(rows_.count(), 0.0),
@@ -29,12 +32,80 @@ MaxwellArray::MaxwellArray(const NetworkDescription& description, const MatBlock
   for (std::size_t l = 0; l < description.maxwell_links.size(); ++l) {
     const MaxwellLink& link = description.maxwell_links[l];
     const std::uint32_t r = rows_.row_of_link[l];
+    tension_[r] = link.start_force;
+    if (link.follows_variables()) {
+      following_.push_back({r, link.state_machine});
+      continue;
+    }
     const double share = share_of_decay(link.stiffness * description.step / link.viscosity);
     velocity_retention_[r] = 1.0 - share;
     gain_[r] = link.viscosity / description.step * share;
     compliance_[r] = 1.0 / link.stiffness;
-    tension_[r] = link.start_force;
   }
+  take_parameters(table);
+}
+
+double MaxwellArray::stiffness_in(const Following& element, const StateTable& table) noexcept {
+  constexpr double kSoftest = 1e-100;  // so that the spring keeps its elongation [N/m]
+  const double stiffness = table.stiffness(table.start_state(element.state_machine));
+  return stiffness > kSoftest ? stiffness : kSoftest;
+}
+
+double MaxwellArray::rate_in(const Following& element, const StateTable& table) noexcept {
+  constexpr double kFastest = 1e100;  // [1/s]
+  const double viscosity = table.viscosity(table.start_state(element.state_machine));
+  if (!(viscosity > 0.0)) return kFastest;
+  return std::min(stiffness_in(element, table) / viscosity, kFastest);
+}
+
+void MaxwellArray::put(std::uint32_t row, double stiffness, double rate) noexcept {
+  const double decay = rate * dt_;
+  const double share = share_of_decay(decay);
+  velocity_retention_[row] = 1.0 - share;
+  gain_[row] = decay > 0.0 ? stiffness / decay * share : stiffness;
+  compliance_[row] = 1.0 / stiffness;
+}
+
+void MaxwellArray::take_parameters(const StateTable& table) noexcept {
+  for (Following& element : following_) {
+    element.stiffness = stiffness_in(element, table);
+    element.rate = rate_in(element, table);
+    put(element.row, element.stiffness, element.rate);
+  }
+}
+
+/// As the kernel has it.
+double MaxwellArray::elongation_increment(std::uint32_t row,
+                                          const ForceColumns& columns) const noexcept {
+  const auto between = [&](const double* places) {
+    return Vec3(Vec3::Map(places + column_b_[row]) - Vec3::Map(places + column_a_[row]));
+  };
+  const Vec3 along = between(columns.position);
+  const Vec3 before = between(columns.delayed);
+  if (is_1d_) return along.x() - before.x();
+  const double lengths = along.norm() + before.norm();
+  return lengths > 0.0 ? dot(along + before, along - before) / lengths : 0.0;
+}
+
+/// The spring keeps its elongation. That it takes the whole way of the ends during the step is of no account:
+/// what is wrong with it is of the order of the other errors of a step.
+double MaxwellArray::follow(const StateTable& table, const ForceColumns& columns) noexcept {
+  double energy = 0.0;
+  for (Following& element : following_) {
+    const std::uint32_t r = element.row;
+    const double stiffness = stiffness_in(element, table);
+    const double rate = rate_in(element, table);
+    const double before = tension_[r];
+    const double stored = 0.5 * before * before * compliance_[r];
+    const double share = stiffness / element.stiffness;
+    tension_[r] = share * before;
+    energy +=
+        (share - 1.0) * stored + 0.5 * (tension_[r] - before) * elongation_increment(r, columns);
+    put(r, stiffness, 0.5 * (element.rate + rate));
+    element.stiffness = stiffness;
+    element.rate = rate;
+  }
+  return energy;
 }
 
 MaxwellRows MaxwellArray::rows(std::size_t first, std::size_t count) noexcept {

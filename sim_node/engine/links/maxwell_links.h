@@ -9,6 +9,7 @@
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/link_groups.h"
 #include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/matter/energy_account.h"
 #include "sim_node/engine/matter/mat_array.h"
 #include "sim_node/engine/matter/mat_roles.h"
@@ -23,7 +24,15 @@ double share_of_decay(double x) noexcept;
 /// Maxwell elements: see MaxwellLink.
 class MaxwellArray {
  public:
-  MaxwellArray(const NetworkDescription& description, const MatBlocks& blocks);
+  MaxwellArray(const NetworkDescription& description, const StateTable& table,
+               const MatBlocks& blocks);
+
+  /// Fits the elements that follow variables to the present parameters of the table: what they were before
+  /// counts no longer. Real time: O(such elements), no allocation.
+  void take_parameters(const StateTable& table) noexcept;
+  /// Takes them to the parameters of this step, before its forces. Real time: O(such elements), no allocation.
+  /// @return energy that these have brought into the springs [J]
+  [[nodiscard]] double follow(const StateTable& table, const ForceColumns& columns) noexcept;
 
   /// Adds the force of every element to its two MATs, in the order of SpringDamperArray::add_forces, shared
   /// likewise. Real time: O(elements), no allocation.
@@ -53,11 +62,24 @@ class MaxwellArray {
   void serialize(Archive& archive);
 
  private:
+  /// An element whose parameters follow variables.
+  struct Following {
+    std::uint32_t row = 0;
+    std::uint32_t state_machine = 0;
+    double stiffness = 0.0;  // of the last call [N/m]
+    double rate = 0.0;       // K / Z of the last call [1/s]
+  };
+  static double stiffness_in(const Following& element, const StateTable& table) noexcept;
+  static double rate_in(const Following& element, const StateTable& table) noexcept;
+  double elongation_increment(std::uint32_t row, const ForceColumns& columns) const noexcept;
+  /// @param rate  K / Z [1/s]
+  void put(std::uint32_t row, double stiffness, double rate) noexcept;
   MaxwellRows rows(std::size_t first, std::size_t count) noexcept;
   StepEnergy add_undecayed(const StateKernel& kernel, const ForceColumns& columns,
                            bool grows) noexcept;
 
   bool is_1d_;                             // 1 dimension
+  double dt_;                              // [s]
   AlignedVector<std::uint32_t> column_a_;  // 4 * MAT index
   AlignedVector<std::uint32_t> column_b_;  // all arrays: one value per row
   GroupedRows rows_;
@@ -66,7 +88,8 @@ class MaxwellArray {
   AlignedVector<double> gain_;                // Z (1 - e^(-K dt / Z)) / dt [N/m]
   AlignedVector<double> compliance_;          // 1 / K [m/N]
   AlignedVector<double> tension_;             // F(n) [N]
-  AlignedVector<double> factor_;  // force of the last call = factor * vector from a to b
+  AlignedVector<double> factor_;      // force of the last call = factor * vector from a to b
+  std::vector<Following> following_;  // in the order of the elements
 };
 
 }  // namespace cordis::engine

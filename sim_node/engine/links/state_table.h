@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,10 +35,27 @@ class StateTable {
   const StateTerm* terms() const noexcept;
   /// The values of the variables that conditions and laws see, one for all links; 0 at first.
   std::span<double> variables() noexcept;
-  /// Keeps these values as those of before, for parameter_energy().
+  /// Keeps these values as those of before, for parameter_energy(), and the parameters that follow them.
   void keep_variables() noexcept;
-  /// True if the law of a state asks for a variable.
+  /// Finds the parameters that follow variables, once these have changed. Real time: O(such parameters), no
+  /// allocation.
+  void find_parameters() noexcept;
+  /// True if the elasticity of a state, or its rest angle, follows a variable.
   bool asks_for_variable(StateIndex state) const noexcept;
+  /// Present parameters of a state: the numbers that stand in it, and the factors that follow variables.
+  double stiffness(StateIndex state) const noexcept;  ///< [N/m], of a bend [N m/rad]
+  double viscosity(StateIndex state) const noexcept;  ///< [N s/m], of a bend [N m s/rad]
+  /// What stiffness() was before the variables were kept.
+  double stiffness_before(StateIndex state) const noexcept;
+  double dt() const noexcept;  ///< [s]
+  /// Rest angle that follows variables [rad]; nothing without one.
+  std::optional<double> rest_angle(StateIndex state) const noexcept;
+  /// The friction in a state.
+  Friction friction(StateIndex state) const noexcept;
+  /// True if a coefficient of it follows variables.
+  bool friction_follows(StateIndex state) const noexcept;
+  /// True if a state is a spring and a damper, whether K and Z follow variables or not.
+  bool is_linear(StateIndex state) const noexcept;
   std::size_t state_count() const noexcept;  ///< without the padding
   StateIndex padding_state() const noexcept;
   StateIndex first_state(std::uint32_t state_machine) const noexcept;
@@ -79,14 +97,9 @@ class StateTable {
   void replace(std::uint32_t index, const StateMachine& state_machine);
 
  private:
-  double stored_energy(StateIndex index, const LawPoint& link) const noexcept;
-  double limited_energy(StateIndex index, const LawPoint& link) const noexcept;
-  /// The tension that stores energy, without the limits of the state [N].
-  double whole_tension(StateIndex index, const LawPoint& link) const noexcept;
-  /// Likewise within them [N].
-  double elastic_tension_of(StateIndex index, const LawPoint& link) const noexcept;
-
   struct Content;
+  struct Elastic;
+
   std::unique_ptr<Content> content_;
 };
 

@@ -57,12 +57,24 @@ void PairFriction::adopt(const StateMachine& state_machine, bool shows_slid) {
   is_one_ = true;
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const Friction& friction = friction_in(state_machine, s);
-    is_one_ = is_one_ && friction == friction_in(state_machine, 0);
+    const bool may_differ = s > 0 && !state_machine.states[s].formulas.empty();
+    is_one_ = is_one_ && friction == friction_in(state_machine, 0) && !may_differ;
     terms_.push_back({friction.stiffness, friction.acts() ? 1.0 / friction.stiffness : 0.0,
                       friction.viscosity / dt_, friction.static_coefficient,
                       friction.kinetic_coefficient});
   }
   stored_ = energy_of_springs();
+}
+
+void PairFriction::take_parameters(const StateTable& table, StateIndex first_state) noexcept {
+  if (!acts()) return;
+  for (std::size_t s = 0; s < terms_.size(); ++s) {
+    const auto state = static_cast<StateIndex>(first_state + s);
+    if (!table.friction_follows(state)) continue;
+    const Friction friction = table.friction(state);
+    terms_[s].static_coefficient = friction.static_coefficient;
+    terms_[s].kinetic_coefficient = friction.kinetic_coefficient;
+  }
 }
 
 double PairFriction::energy_of_springs() const noexcept {

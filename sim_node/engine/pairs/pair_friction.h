@@ -10,6 +10,7 @@
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/links/state_kernel.h"
+#include "sim_node/engine/links/state_table.h"
 #include "sim_node/engine/pairs/contact_stretches.h"
 #include "sim_node/engine/pairs/pair_block.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
@@ -31,6 +32,9 @@ class PairFriction {
   /// Takes other parameters. Allocates. Precondition: acts() stays as it was.
   /// @param shows_slid  true if conditions ask for Quantity::kSlid
   void adopt(const StateMachine& state_machine, bool shows_slid);
+
+  /// Takes the coefficients that follow variables. Real time: O(states), no allocation.
+  void take_parameters(const StateTable& table, StateIndex first_state) noexcept;
 
   /// @param frozen  before the start: contacts of the start hold, and nothing is remembered
   void begin_step(bool frozen) noexcept;

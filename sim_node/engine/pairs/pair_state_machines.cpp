@@ -39,6 +39,12 @@ void PairStateMachines::adopt(const StateTable& table) {
   }
   needs_mass_ = table.needs(Quantity::kMassA) || table.needs(Quantity::kMassB);
   needs_impulse_ = table.needs(Quantity::kImpulse);
+  asks_for_variable_ = false;
+  const StateIndex first = table.first_state(state_machine_);
+  for (std::size_t s = 0; s < table.state_machines()[state_machine_].states.size(); ++s) {
+    const auto state = static_cast<StateIndex>(first + s);
+    asks_for_variable_ = asks_for_variable_ || table.asks_for_variable(state);
+  }
   const bool was_stateless = stateless_;
   stateless_ = table.state_machines()[state_machine_].is_stateless();
   if (!stateless_ && was_stateless) {
@@ -51,6 +57,7 @@ void PairStateMachines::adopt(const StateTable& table) {
 
 void PairStateMachines::begin_step(const PairStep& step) noexcept {
   switching_ = 0.0;
+  parameter_energy_ = 0.0;
   forgotten_ = 0;
   if (!stateless_ && !step.frozen) states_.begin_step();
 }
@@ -87,18 +94,70 @@ bool PairStateMachines::is_bound(std::size_t a, std::uint32_t column) const noex
 }
 
 void PairStateMachines::step(const PairStep& step, const MemberColumns& members, const double* slid,
-                             double range_square, PairBlock& block) noexcept {
+                             const PairRest& rest, double range, PairBlock& block) noexcept {
+  const double range_square = range * range;
   if (needs_mass_) find_masses(block.rows());
   if (stateless_) {
+    add_parameter_energy(step, rest, range, block);
     find_plain_tensions(step, block);
     return;
   }
   recall(step, block);
+  add_parameter_energy(step, rest, range, block);
   if (needs_velocity_) find_velocities(members, block.rows());
   find_quantities(step, block);
   step_batches(step, slid, block);
   if (remembers(step)) remember(range_square, block);
   find_factors(range_square, block);
+}
+
+/// Such energy of pairs in one state, a spring without a force limit. Beyond its range a pair has what it has there.
+double PairStateMachines::linear_parameter_energy(const PairStep& step, const PairRest& rest,
+                                                  double range, PairBlock& block) const noexcept {
+  const StateTerm& term = step.table.terms()[start_];
+  const double more = step.table.stiffness(start_) - step.table.stiffness_before(start_);
+  if (more == 0.0) return 0.0;
+  const auto clamped = [&term](double elongation) {
+    return std::min(term.max_elongation, std::max(term.min_elongation, elongation));
+  };
+  const PairRows rows = block.rows();
+  const PairRow pairs = rows.pairs;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    if (pairs.square[i] == 0.0) continue;
+    const double rest_length = rest.length(rows.column_a[i] / 4, pairs.column[i] / 4);
+    const double here = clamped(pairs.length[i] - rest_length);
+    const double at_range = clamped(range - rest_length);
+    sum += here * (here - pairs.elongation_increment[i]) - at_range * at_range;
+  }
+  return 0.5 * more * sum;
+}
+
+void PairStateMachines::add_parameter_energy(const PairStep& step, const PairRest& rest,
+                                             double range, PairBlock& block) noexcept {
+  if (!asks_for_variable_ || step.frozen) return;
+  const bool has_limit = std::isfinite(step.table.state(start_).force_limit);
+  if (stateless_ && step.table.is_linear(start_) && !has_limit) {
+    parameter_energy_ += linear_parameter_energy(step, rest, range, block);
+    return;
+  }
+  const PairRows rows = block.rows();
+  const PairRow pairs = rows.pairs;
+  const bool asks_at_range = step.table.asks_for_variable(start_);
+  for (std::size_t i = 0; i < rows.count; ++i) {
+    const StateIndex state = stateless_ ? start_ : state_[i];
+    const bool out_of_reach = state == start_ && !(pairs.square[i] < range * range);
+    if (pairs.square[i] == 0.0 || out_of_reach) continue;
+    const std::size_t a = rows.column_a[i] / 4;
+    const std::size_t b = pairs.column[i] / 4;
+    const EndMasses mass = masses_of(a, b);
+    if (step.table.asks_for_variable(state)) {
+      parameter_energy_ += step.table.parameter_energy(
+          state, pairs.length[i], block.rest_length()[i], mass, pairs.elongation_increment[i]);
+    }
+    if (asks_at_range)
+      parameter_energy_ -= step.table.parameter_energy(start_, range, rest.length(a, b), mass, 0.0);
+  }
 }
 
 void PairStateMachines::find_plain_tensions(const PairStep& step, PairBlock& block) noexcept {

@@ -59,7 +59,14 @@ class PairStateMachines {
   /// that new pairs have.
   /// @param slid  of each pair, see Quantity::kSlid; null without friction [m]
   void step(const PairStep& step, const MemberColumns& members, const double* slid,
-            double range_square, PairBlock& block) noexcept;
+            const PairRest& rest, double range, PairBlock& block) noexcept;
+
+  /// Adds what parameters that follow variables bring into the pairs of a block that are in range or bound, less
+  /// what they bring into such pairs at their range. Called by step(), or for a block that has none.
+  void add_parameter_energy(const PairStep& step, const PairRest& rest, double range,
+                            PairBlock& block) noexcept;
+  /// Brought so in this step [J].
+  double parameter_energy() const noexcept { return parameter_energy_; }
 
   /// Rows that are left out of a step remember what they did.
   void keep_rows(const PairStep& step, std::size_t first, std::size_t last) noexcept {
@@ -126,6 +133,8 @@ class PairStateMachines {
     return memory_.data() + pair / kPairBatch * states_.slot_count() * kPairBatch +
            pair % kPairBatch;
   }
+  double linear_parameter_energy(const PairStep& step, const PairRest& rest, double range,
+                                 PairBlock& block) const noexcept;
   void find_masses(const PairRows& rows) noexcept;
   void find_velocities(const MemberColumns& members, const PairRows& rows) noexcept;
   void find_plain_tensions(const PairStep& step, PairBlock& block) noexcept;
@@ -148,11 +157,13 @@ class PairStateMachines {
   bool needs_velocity_ = false;
   bool needs_mass_ = false;
   bool needs_impulse_ = false;
+  bool asks_for_variable_ = false;  // the elasticity of a state does
   StateIndex start_ = 0;
   StateIndex padding_ = 0;
   std::size_t capacity_;
   PairStates states_;
   double switching_ = 0.0;
+  double parameter_energy_ = 0.0;  // [J]
   std::uint32_t forgotten_ = 0;
   AlignedVector<StateIndex> state_;      // of each pair of the block
   AlignedVector<double> values_;         // kArrayCount arrays of the block

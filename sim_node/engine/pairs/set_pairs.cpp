@@ -161,11 +161,13 @@ void SetPairs::adopt(const StateTable& table) {
   const StateTerm& term = table.terms()[start];
   const Law& elasticity = table.state(start).elasticity;
   const auto* lennard_jones = std::get_if<LennardJones>(&elasticity);
-  const bool plain = !state_machines_.has_states() && is_none(table.state(start).dissipation);
-  const bool bare =
-      term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited && !friction_.acts();
+  follows_variables_ = laws_ask_for_variable(table.state_machines()[state_machine_]);
+  const bool is_plain_damper = is_none(table.state(start).dissipation);
+  const bool plain = !state_machines_.has_states() && is_plain_damper;
+  const bool bare = term.stiffness == 0.0 && term.viscosity_over_dt == 0.0 && !term.limited &&
+                    !friction_.acts() && !follows_variables_;
   path_ = Path::kAnyStateMachine;
-  if (plain && is_none(elasticity)) {
+  if (!state_machines_.has_states() && table.is_linear(start)) {
     path_ = Path::kLinear;
     linear_ = {term.stiffness, term.viscosity_over_dt, term.min_tension, term.max_tension};
   } else if (plain && bare && lennard_jones != nullptr && surfaces_.empty()) {
@@ -178,17 +180,28 @@ void SetPairs::adopt(const StateTable& table) {
   const auto is_bare_limit = [](double tension) { return tension == 0.0 || std::isinf(tension); };
   const bool conservative =
       path_ == Path::kLennardJones ||
-      (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 && !friction_.acts() &&
-       is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
+      (path_ == Path::kLinear && term.viscosity_over_dt == 0.0 && is_plain_damper &&
+       !friction_.acts() && is_bare_limit(term.min_tension) && is_bare_limit(term.max_tension));
   has_viscous_ = has_viscous_ || !conservative;  // forces of the last step may have been
   is_sharable_ = is_sharable(table);
+  take_parameters(table);
+}
+
+void SetPairs::take_parameters(const StateTable& table) noexcept {
+  if (!follows_variables_) return;
+  if (path_ == Path::kLinear) {
+    const StateIndex start = table.start_state(state_machine_);
+    linear_.stiffness = table.stiffness(start);
+    linear_.viscosity_over_dt = table.viscosity(start) / table.dt();
+  }
+  friction_.take_parameters(table, first_state_);
 }
 
 bool SetPairs::is_sharable(const StateTable& table) const noexcept {
   const bool asks_for_masses = path_ == Path::kAnyStateMachine &&
                                (table.needs(Quantity::kMassA) || table.needs(Quantity::kMassB));
   return shares_.exist() && !state_machines_.has_states() && !friction_.acts() &&
-         contacts_.empty() && !asks_for_masses;
+         contacts_.empty() && !asks_for_masses && !follows_variables_;
 }
 
 std::size_t SetPairs::part_count() const noexcept {
@@ -261,6 +274,7 @@ bool SetPairs::refresh(ThreadTeam* team) noexcept {
 
 StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& columns,
                                      ThreadTeam* team) noexcept {
+  take_parameters(step.table);
   if (may_share(team) && neighbours_.is_whole() &&
       shares_.divide(neighbours_.first_rows(position_.data()), neighbours_.build_count(), *team)) {
     return add_shared_forces(step, columns, *team);
@@ -282,6 +296,7 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   count_partners();
   StepEnergy energy = give_forces(columns);
   energy.switching += state_machines_.switching();
+  energy.switching += state_machines_.parameter_energy() + parameter_energy_of_zero(step);
   if (!friction_.acts_now()) return energy;
   // The works count all of friction as taken; its springs give some of it back.
   const double stored = friction_.end_step();
@@ -576,10 +591,11 @@ PairRows SetPairs::measure(const MemberColumns& members, PairBlock& block) noexc
 void SetPairs::find_factors(const PairStep& step, const MemberColumns& members, const double* slid,
                             PairBlock& block) noexcept {
   if (path_ == Path::kLinear) {
+    state_machines_.add_parameter_energy(step, rest(), range_, block);
     kernel_.linear_pairs(linear_, block.rows().pairs, block.count(), block.rest_length(),
                          block.factor(), block.viscous_factor());
   } else {
-    state_machines_.step(step, members, slid, range_ * range_, block);
+    state_machines_.step(step, members, slid, rest(), range_, block);
   }
 }
 
@@ -811,24 +827,55 @@ void SetPairs::add_potential(const StateTable& table, StateIndex state, std::siz
   sum.stored += table.stored_energy(state, distance, rest_length, mass);
   // The potential of Lennard-Jones is 0 far away.
   if (path_ == Path::kLennardJones) return;
-  sum.at_range +=
-      table.stored_energy(state_machines_.start_state(), range_, rest().length(a, b), mass);
+  const double rest_of_start = rest().length(a, b);
+  sum.at_range += table.stored_energy(state_machines_.start_state(), range_, rest_of_start, mass);
+  if (sum.alike == nullptr) return;
+  const bool asks_for_mass = table.needs(Quantity::kMassA) || table.needs(Quantity::kMassB);
+  const EndMasses own = asks_for_mass ? mass : EndMasses{};
+  (*sum.alike)[{rest_of_start, own.a, own.b}] += 1.0;
 }
 
 /// Beyond the range there is no force: a pair has there what it has at the range. So the sum is 0 with all
 /// pairs beyond it. Where the pairs of the start store less by their laws, they count as those do, and the sum is
 /// 0 where they store nothing: what they store is not lost beside that of the range.
 double SetPairs::stored_energy(const StateTable& table) noexcept {
-  const Potential sum = potential(table);
+  std::map<std::tuple<double, double, double>, double> alike;
+  const bool finds_pairs = !zero_ && follows_variables_;
+  const Potential sum = potential(table, finds_pairs ? &alike : nullptr);
   if (!zero_) {
     const bool is_less = std::abs(sum.stored) < std::abs(sum.stored - sum.at_range);
-    zero_ = is_less && std::isfinite(sum.at_range) ? sum.at_range : 0.0;
+    const bool counts = is_less && std::isfinite(sum.at_range);
+    zero_ = counts ? sum.at_range : 0.0;
+    for (const auto& [pair, count] : alike) {
+      const auto& [rest_length, mass_a, mass_b] = pair;
+      if (counts) pairs_of_zero_.push_back({rest_length, {mass_a, mass_b}, count});
+    }
   }
-  return friction_.stored_energy() + sum.stored + (*zero_ - sum.at_range);
+  return friction_.stored_energy() + sum.stored + (energy_of_zero(table) - sum.at_range);
 }
 
-SetPairs::Potential SetPairs::potential(const StateTable& table) noexcept {
+double SetPairs::energy_of_zero(const StateTable& table) const noexcept {
+  if (pairs_of_zero_.empty()) return *zero_;
+  double sum = 0.0;
+  for (const auto& [rest_length, mass, count] : pairs_of_zero_) {
+    sum += count * table.stored_energy(state_machines_.start_state(), range_, rest_length, mass);
+  }
+  return sum;
+}
+
+double SetPairs::parameter_energy_of_zero(const PairStep& step) const noexcept {
+  const StateIndex start = state_machines_.start_state();
+  if (step.frozen || !step.table.asks_for_variable(start)) return 0.0;
+  double sum = 0.0;
+  for (const auto& [rest_length, mass, count] : pairs_of_zero_)
+    sum += count * step.table.parameter_energy(start, range_, rest_length, mass, 0.0);
+  return sum;
+}
+
+SetPairs::Potential SetPairs::potential(
+    const StateTable& table, std::map<std::tuple<double, double, double>, double>* alike) noexcept {
   Potential sum;
+  sum.alike = alike;
   const PairStates& states = state_machines_.states();
   const StateIndex start = state_machines_.start_state();
   const auto distance = [this](std::size_t a, std::size_t b) {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "node/assert.h"
@@ -50,6 +52,8 @@ class SetPairs {
 
   /// Fits the set to a table that has been changed. Allocates.
   void adopt(const StateTable& table);
+  /// Takes the parameters that follow variables. Real time: O(states), no allocation.
+  void take_parameters(const StateTable& table) noexcept;
 
   /// Adds the force of every pair to its two MATs.
   /// @return elastic, dissipated and switched energy, as EnergyAccount counts them: half of the
@@ -216,12 +220,25 @@ class SetPairs {
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
   void pad_at_surfaces() noexcept;
+  /// Pairs that are alike where they come into range.
+  struct AlikeAtRange {
+    double rest_length = 0.0;  // [m]
+    EndMasses mass{};
+    double count = 0.0;
+  };
   /// Energies of all pairs [J].
   struct Potential {
     double stored = 0.0;
     double at_range = 0.0;  // what they have where they come into range
+    /// Null, or where these pairs are added.
+    std::map<std::tuple<double, double, double>, double>* alike = nullptr;
   };
-  Potential potential(const StateTable& table) noexcept;
+  Potential potential(const StateTable& table,
+                      std::map<std::tuple<double, double, double>, double>* alike) noexcept;
+  /// What the pairs of the start have where they come into range, or 0: see stored_energy() [J].
+  double energy_of_zero(const StateTable& table) const noexcept;
+  /// What parameters that follow variables have brought into that [J].
+  double parameter_energy_of_zero(const PairStep& step) const noexcept;
   void add_potential(const StateTable& table, StateIndex state, std::size_t a, std::size_t b,
                      double distance, double rest_length, Potential& sum) const noexcept;
   void find_rest_lengths(PairBlock& block) const noexcept;
@@ -249,6 +266,7 @@ class SetPairs {
   double range_;                 // [m]
   PartnerShare share_;
   Path path_ = Path::kAnyStateMachine;
+  bool follows_variables_ = false;  // some parameter does
   LinearPair linear_;
   LennardJonesPair lennard_jones_;
   SurfaceNeighbours surfaces_;
@@ -265,7 +283,8 @@ class SetPairs {
   AlignedVector<double> force_;    // and as fourth value the number of partners
   AlignedVector<double> viscous_;  // the part of the force that stores no energy
   bool has_viscous_ = false;
-  std::optional<double> zero_;  // added to the stored energy [J]
+  std::optional<double> zero_;               // added to the stored energy, as of the start [J]
+  std::vector<AlikeAtRange> pairs_of_zero_;  // where parameters follow variables
   ActivePairs active_;
   PartnerCount largest_partners_;
   std::size_t chunk_ = 0;          // members whose works are summed together

@@ -15,6 +15,7 @@
 
 #include "sim_node/plan/stability/force_slopes.h"
 #include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/parameter_bounds.h"
 #include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
@@ -47,10 +48,12 @@ constexpr const char* kStartsTooStrong =
     "meet";
 
 /// A start force of up to K times the distance is that of a spring without a rest length.
-bool turns_without_limit(const NetworkDescription& network, const engine::MaxwellLink& link) {
+/// @param softest  the least K of the element [N/m]
+bool turns_without_limit(const NetworkDescription& network, const engine::MaxwellLink& link,
+                         double softest) {
   if (network.dimension == 1) return false;
   const engine::Vec3 along = network.mats[link.mat_b].position - network.mats[link.mat_a].position;
-  return link.start_force > link.stiffness * along.norm();
+  return link.start_force > softest * along.norm();
 }
 
 /// True if the value of a law has no bound because of one of its variables, though all others are at most 1.
@@ -73,33 +76,44 @@ std::vector<std::uint32_t> unbounded_variables(const engine::StateMachine& state
                                                const std::vector<Interval>& ranges) {
   std::vector<std::uint32_t> asked;
   std::vector<std::uint32_t> unbounded;
-  const auto read = [&](const engine::Law& law) {
-    const auto* expression = std::get_if<engine::Expression>(&law);
-    if (expression == nullptr) return;
-    for (const engine::Instruction& instruction : expression->program.code) {
+  const auto read = [&](const engine::Program& program) {
+    for (const engine::Instruction& instruction : program.code) {
       const std::uint32_t variable = instruction.slot;
       if (instruction.operation != engine::Operation::kVariable) continue;
       if (std::ranges::find(asked, variable) != asked.end()) continue;
       asked.push_back(variable);
-      if (is_unbounded_by(expression->program, variable, ranges)) unbounded.push_back(variable);
+      if (is_unbounded_by(program, variable, ranges)) unbounded.push_back(variable);
     }
   };
   for (const engine::LinkState& state : state_machine.states) {
-    read(state.elasticity);
-    read(state.dissipation);
+    for (const engine::Law* const law : {&state.elasticity, &state.dissipation}) {
+      if (const auto* expression = std::get_if<engine::Expression>(law)) read(expression->program);
+    }
+    for (const engine::ParameterFormula& each : state.formulas) read(each.formula);
   }
   return unbounded.empty() ? asked : unbounded;
 }
 
-std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network, LiaisonId liaison,
-                                               const Reach& reach) {
-  const std::uint32_t state_machine = liaison.kind == LiaisonKind::kSet
-                                          ? network.sets[liaison.index].state_machine
-                                          : network.state_links[liaison.index].state_machine;
-  return unbounded_variables(network.state_machines[state_machine], *reach.variables);
+std::uint32_t state_machine_of(const NetworkDescription& network, LiaisonId liaison) {
+  switch (liaison.kind) {
+    case LiaisonKind::kSet:
+      return network.sets[liaison.index].state_machine;
+    case LiaisonKind::kMaxwellLink:
+      return network.maxwell_links[liaison.index].state_machine;
+    case LiaisonKind::kBend:
+      return network.bends[liaison.index].state_machine;
+    default:
+      return network.state_links[liaison.index].state_machine;
+  }
 }
 
-/// Precondition: the liaison has states or is of sets.
+std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network, LiaisonId liaison,
+                                               const Reach& reach) {
+  return unbounded_variables(network.state_machines[state_machine_of(network, liaison)],
+                             *reach.variables);
+}
+
+/// Precondition: the liaison has a state machine, or nothing is uncertain of it.
 void note(const NetworkDescription& network, const Slope& slope, LiaisonId liaison,
           LiaisonGraph& graph) {
   graph.bounded = graph.bounded && slope.bounded;
@@ -151,30 +165,39 @@ std::array<engine::LawPoint, 4> points_at(double distance, double rest_length, c
           point(reach.mass_a.high, reach.mass_b.low), point(reach.mass_a.high, reach.mass_b.high)};
 }
 
+constexpr double kJump = 0.1;
+constexpr double kJumpOfSlow = 1e-3;
+
 /// True if a pair in the state of its start still pulls or pushes where it crosses its range, with
 /// more than a share of what the largest slope of that state would over the whole range. What is slow comes to
 /// surfaces, and to what pushes it away, over and over, and is thrown off each time as if it had come fast.
 bool jumps_at_range(const engine::StateMachine& state_machine, double rest_length, double range,
                     int dimension, const Reach& reach, bool on_surfaces) {
-  constexpr double kJump = 0.1;
-  constexpr double kJumpOfSlow = 1e-3;
+  const auto is_jump = [&](double tension, double slope) {
+    const double share = on_surfaces || tension < 0.0 ? kJumpOfSlow : kJump;
+    return std::abs(tension) > share * slope * range;
+  };
   constexpr double kJustWithin = 1.0 - 1e-9;
   const engine::StateMachine start = start_state_alone(state_machine);
   const engine::LinkState& state = start.states[0];
   const double slope = largest_slope(start, rest_length, dimension, reach).stiffness;
+  if (asks_for_variable(state.elasticity)) {
+    const Interval tension = tension_at(state, kJustWithin * range, rest_length, reach);
+    return is_jump(tension.low, slope) || is_jump(tension.high, slope);
+  }
   const auto points = points_at(kJustWithin * range, rest_length, reach);
   return std::any_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
     const double tension =
         std::clamp(state.stiffness * point.elongation + elastic_tension(state.elasticity, point),
                    state.pushes ? -state.force_limit : 0.0, state.pulls ? state.force_limit : 0.0);
-    const double share = on_surfaces || tension < 0.0 ? kJumpOfSlow : kJump;
-    return std::abs(tension) > share * slope * range;
+    return is_jump(tension, slope);
   });
 }
 
 /// True if the energy of the scene carries no pair of a set that begins within its range beyond it.
 bool is_confined(const engine::StateMachine& state_machine, double rest_length, double range,
                  const Reach& reach) {
+  if (is_fed(state_machine)) return false;
   const auto points = points_at(range, rest_length, reach);
   return !reach.held &&
          std::all_of(points.begin(), points.end(), [&](const engine::LawPoint& point) {
@@ -265,23 +288,62 @@ namespace {
 
 /// A bend as a link along each side: |v / l - R u / k|^2 is at most (1 / k + 1 / l) (|u|^2 / k + |v|^2 / l), as
 /// equal as can be where it bends the most.
-void add_bend(const engine::Bend& bend, std::uint32_t index, LiaisonGraph& graph) {
-  const double both = 1.0 / bend.length_ab + 1.0 / bend.length_bc;
+void add_bend(const NetworkDescription& network, std::uint32_t index, LiaisonGraph& graph) {
+  const engine::Bend& bend = network.bends[index];
   const LiaisonId id{LiaisonKind::kBend, index};
+  LinearBounds bounds = linear_bounds(network, bend, graph.reach);
+  Slope slope;
+  if (!std::isfinite(bounds.stiffness.high) || !std::isfinite(bounds.viscosity.high)) {
+    slope.uncertainty = kUnboundedVariable;
+    if (!std::isfinite(bounds.stiffness.high)) bounds.stiffness = {};
+    if (!std::isfinite(bounds.viscosity.high)) bounds.viscosity = {};
+  } else if (bounds.stiffness.low < 0.0) {
+    slope.uncertainty = kMayDriveApart;
+  } else if (bounds.viscosity.low < 0.0) {
+    slope.uncertainty = kMayDriveMotion;
+  }
+  note(network, slope, id, graph);
+  // A change of state is no change of a slope, but that of a parameter is one.
+  const bool varies =
+      bend.has_states() && laws_ask_for_variable(network.state_machines[bend.state_machine]);
+  const double variation = varies ? bounds.stiffness.high - bounds.stiffness.low : 0.0;
+  const double stiffness = std::max(bounds.stiffness.high, 0.0);
+  const double viscosity = std::max(bounds.viscosity.high, 0.0);
+  const double both = 1.0 / bend.length_ab + 1.0 / bend.length_bc;
   const double at_ab = both / bend.length_ab;
   const double at_bc = both / bend.length_bc;
   graph.edges.push_back(
-      {bend.mat_a, bend.mat_b, at_ab * bend.stiffness, at_ab * bend.viscosity, id});
+      {bend.mat_a, bend.mat_b, at_ab * stiffness, at_ab * viscosity, id, true, at_ab * variation});
   graph.edges.push_back(
-      {bend.mat_b, bend.mat_c, at_bc * bend.stiffness, at_bc * bend.viscosity, id});
+      {bend.mat_b, bend.mat_c, at_bc * stiffness, at_bc * viscosity, id, true, at_bc * variation});
+}
+
+void add_maxwell_link(const NetworkDescription& network, std::uint32_t index, LiaisonGraph& graph) {
+  const engine::MaxwellLink& link = network.maxwell_links[index];
+  const LiaisonId id{LiaisonKind::kMaxwellLink, index};
+  LinearBounds bounds = linear_bounds(network, link, graph.reach);
+  Slope slope;
+  if (!std::isfinite(bounds.stiffness.high)) {
+    slope.uncertainty = kUnboundedVariable;
+    bounds.stiffness = {};
+  }
+  note(network, slope, id, graph);
+  if (turns_without_limit(network, link, bounds.stiffness.low) && !graph.uncertainty)
+    graph.uncertainty = {id, kStartsTooStrong};
+  engine::MaxwellLink largest = link;
+  largest.stiffness = bounds.stiffness.high;
+  largest.viscosity = bounds.viscosity.high;
+  graph.maxwell_links.push_back(largest);
+  graph.edges.push_back({link.mat_a, link.mat_b, largest.stiffness, 0.0, id, true,
+                         bounds.stiffness.high - bounds.stiffness.low});
 }
 
 }  // namespace
 
-void LiaisonGraph::set_step(const NetworkDescription& network, double step) {
+void LiaisonGraph::set_step(double step) {
   for (Edge& edge : edges) {
     if (edge.liaison.kind != LiaisonKind::kMaxwellLink) continue;
-    const engine::MaxwellLink& link = network.maxwell_links[edge.liaison.index];
+    const engine::MaxwellLink& link = maxwell_links[edge.liaison.index];
     const double turn = 0.5 * link.stiffness * step / link.viscosity;
     edge.stiffness = turn > 0.0 ? link.stiffness * std::tanh(turn) / turn : link.stiffness;
   }
@@ -396,7 +458,38 @@ void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
 
 }  // namespace
 
+namespace {
+
+/// The first link with states or set of an unbounded state machine.
+std::optional<LiaisonId> first_unbounded(const NetworkDescription& network,
+                                         const std::vector<bool>& is_unbounded) {
+  for (std::uint32_t s = 0; s < network.sets.size(); ++s)
+    if (is_unbounded[network.sets[s].state_machine]) return LiaisonId{LiaisonKind::kSet, s};
+  for (std::uint32_t l = 0; l < network.state_links.size(); ++l)
+    if (is_unbounded[network.state_links[l].state_machine])
+      return LiaisonId{LiaisonKind::kStateLink, l};
+  return {};
+}
+
+LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor);
+
+}  // namespace
+
 LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_factor) {
+  if (!has_formulas(network)) return graph_of(network, reach_factor);
+  const LargestParameters largest = largest_parameters(network);
+  LiaisonGraph graph = graph_of(largest.network, reach_factor);
+  const std::optional<LiaisonId> unbounded = first_unbounded(network, largest.is_unbounded);
+  if (unbounded && !graph.uncertainty) {
+    graph.uncertainty = {*unbounded, kUnboundedVariable,
+                         unbounded_variables(network, *unbounded, graph.reach)};
+  }
+  return graph;
+}
+
+namespace {
+
+LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
   LiaisonGraph graph;
   for (const engine::Mat& mat : network.mats) {
     const bool is_mass = mat.kind == engine::MatKind::kMass;
@@ -433,17 +526,9 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
                            slope.bounded,
                            slope.variation});
   }
-  index = 0;
-  for (const engine::MaxwellLink& link : network.maxwell_links) {
-    if (turns_without_limit(network, link) && !graph.uncertainty) {
-      graph.uncertainty = {{LiaisonKind::kMaxwellLink, index}, kStartsTooStrong};
-    }
-    graph.edges.push_back(
-        {link.mat_a, link.mat_b, link.stiffness, 0.0, {LiaisonKind::kMaxwellLink, index++}});
-  }
-  for (index = 0; index < network.bends.size(); ++index) {
-    add_bend(network.stiffest_of(network.bends[index]), index, graph);
-  }
+  for (index = 0; index < network.maxwell_links.size(); ++index)
+    add_maxwell_link(network, index, graph);
+  for (index = 0; index < network.bends.size(); ++index) add_bend(network, index, graph);
   double stored = 0.0;
   for (index = 0; index < network.sets.size(); ++index)
     stored += add_set(network, index, reach, graph);
@@ -453,10 +538,11 @@ LiaisonGraph liaison_graph(const NetworkDescription& network, double reach_facto
     graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
   }
   if (reach.fed && !graph.bounded && !graph.uncertainty) {
-    const LiaisonId fed{LiaisonKind::kStateLink, *reach.fed};
-    graph.uncertainty = {fed, kFed, unbounded_variables(network, fed, reach)};
+    graph.uncertainty = {*reach.fed, kFed, unbounded_variables(network, *reach.fed, reach)};
   }
   return graph;
 }
+
+}  // namespace
 
 }  // namespace cordis::plan

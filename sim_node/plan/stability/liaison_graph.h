@@ -80,9 +80,12 @@ struct LiaisonGraph {
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
   Turning turning;
   Reach reach;  ///< the reach to which laws without a largest slope were followed
+  /// Maxwell elements with the largest parameters that they can have, in their order; a viscosity that nothing
+  /// bounds is infinite.
+  std::vector<engine::MaxwellLink> maxwell_links;
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
-  void set_step(const engine::NetworkDescription& network, double step);
+  void set_step(double step);
 };
 
 /// Maxwell elements at their full stiffness, as set_step(0) would have them.

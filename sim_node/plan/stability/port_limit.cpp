@@ -168,7 +168,8 @@ std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound) {
   };
   for (const Edge& edge : graph.edges) {
     // The edges of a bend are a bound from above.
-    if (least && (!edge.bounded || edge.liaison.kind == LiaisonKind::kBend)) continue;
+    const bool changes = edge.liaison.kind == LiaisonKind::kMaxwellLink && edge.variation > 0.0;
+    if (least && (!edge.bounded || edge.liaison.kind == LiaisonKind::kBend || changes)) continue;
     add(edge.mat_a, 1.0, edge.stiffness, edge.viscosity);
     if (edge.mat_b != edge.mat_a) add(edge.mat_b, 1.0, edge.stiffness, edge.viscosity);
   }

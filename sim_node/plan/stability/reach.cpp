@@ -9,12 +9,15 @@
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/parameter_bounds.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
 
 namespace cordis::plan {
 namespace {
+
+using engine::LiaisonKind;
 
 constexpr double kMinSpeed = 1.0;  // [m/s]
 
@@ -53,20 +56,21 @@ bool needs_energy(const engine::NetworkDescription& network) {
 }
 
 /// Stored by the pairs of a set at the start, and what each of its members can gain in one pair.
-double brought_by_set(const engine::NetworkDescription& network, const engine::SetLiaison& set) {
+double brought_by_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+                      const Reach& reach) {
   const StartPairs near(network, set);
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const Reach of_masses =
+      reach_between(reach, network, set.set_p, set.set_q.empty() ? set.set_p : set.set_q);
   double energy = 0.0;
   double nearest = set.range;
   double rest = std::max(set.rest_length, 0.0);
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint point = start_point(network, set, pair);
-    energy += stored_in(state_machine, point);
+    energy += max_stored_in(state_machine, point, of_masses);
     nearest = std::min(nearest, pair.distance);
     rest = point.distance - point.elongation;
   }
-  const Reach of_masses =
-      reach_between({}, network, set.set_p, set.set_q.empty() ? set.set_p : set.set_q);
   const double fall = brought_by_pair(network, set, nearest, rest, of_masses);
   if (!std::isfinite(fall)) return energy;
   return energy + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
@@ -85,7 +89,8 @@ double stored_by_friction(const engine::NetworkDescription& network,
 }
 
 /// Kinetic, stored and what falling through the scene brings, of all but links with states [J].
-double energy_brought(const engine::NetworkDescription& network) {
+/// @param reach  its variables alone
+double energy_brought(const engine::NetworkDescription& network, const Reach& reach) {
   double energy = 0.0;
   for (const engine::Mat& mat : network.mats) {
     if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
@@ -95,19 +100,40 @@ double energy_brought(const engine::NetworkDescription& network) {
     energy += 0.5 * link.stiffness * e * e;
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
-    energy += 0.5 * link.start_force * link.start_force / link.stiffness;
+    if (link.start_force == 0.0) continue;
+    const double softest = linear_bounds(network, link, reach).stiffness.low;
+    energy += 0.5 * link.start_force * link.start_force / softest;
   }
   for (const engine::Bend& bend : network.bends) {
     const double w = engine::bend_at_start(network, bend).norm();
+    const double stiffest = linear_bounds(network, bend, reach).stiffness.high;
+    if (!std::isfinite(stiffest)) continue;  // then nothing is certain of it
     energy +=
-        0.5 * network.stiffest_of(bend).stiffness *
+        0.5 * stiffest *
         (bend.has_states() ? std::max(4.0, w * w) : w * w);  // a change may fold it the other way
   }
   for (const engine::SetLiaison& set : network.sets) energy += stored_by_friction(network, set);
   if (needs_energy(network)) {
-    for (const engine::SetLiaison& set : network.sets) energy += brought_by_set(network, set);
+    for (const engine::SetLiaison& set : network.sets)
+      energy += brought_by_set(network, set, reach);
   }
   return energy + weight_of(network) * extent_of(network);
+}
+
+/// The first Maxwell element, bend or set whose elasticity follows a variable.
+std::optional<engine::LiaisonId> fed_beside_links(const engine::NetworkDescription& network) {
+  const auto first_of = [&](const auto& liaisons,
+                            LiaisonKind kind) -> std::optional<engine::LiaisonId> {
+    for (std::uint32_t index = 0; index < liaisons.size(); ++index) {
+      const std::uint32_t machine = liaisons[index].state_machine;
+      if (machine < network.state_machines.size() && is_fed(network.state_machines[machine]))
+        return engine::LiaisonId{kind, index};
+    }
+    return {};
+  };
+  if (const auto fed = first_of(network.maxwell_links, LiaisonKind::kMaxwellLink)) return fed;
+  if (const auto fed = first_of(network.bends, LiaisonKind::kBend)) return fed;
+  return first_of(network.sets, LiaisonKind::kSet);
 }
 
 /// The speed at which a state holds a force that lasts, by its viscosity [m/s].
@@ -227,19 +253,17 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
       ranges.push_back(range_of_variable(network, variable));
     reach.variables = std::make_shared<const std::vector<Interval>>(std::move(ranges));
   }
+  double energy = energy_brought(network, reach);
   reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
-  double energy = energy_brought(network);
   std::uint32_t index = 0;
   BroughtByLinks known;
   for (const engine::StateLink& link : network.state_links) {
     const double distance =
         (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
     reach.elongation = std::max({reach.elongation, distance, std::abs(link.rest_length)});
-    const bool is_fed = std::ranges::any_of(
-        network.state_machines[link.state_machine].states,
-        [](const engine::LinkState& state) { return asks_for_variable(state.elasticity); });
-    if (is_fed && !reach.fed) reach.fed = index;
-    const double brought = is_fed ? 0.0 : known.brought(network, link);
+    const bool feeds = is_fed(network.state_machines[link.state_machine]);
+    if (feeds && !reach.fed) reach.fed = engine::LiaisonId{LiaisonKind::kStateLink, index};
+    const double brought = feeds ? 0.0 : known.brought(network, link);
     if (std::isfinite(brought)) {
       energy += brought;
     } else if (!reach.endless) {
@@ -250,6 +274,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   for (const engine::SetLiaison& set : network.sets) {
     reach.elongation = std::max(reach.elongation, set.range);
   }
+  if (!reach.fed) reach.fed = fed_beside_links(network);
   for (const engine::Mat& mat : network.mats) {
     if (mat.kind != engine::MatKind::kMass) continue;
     reach.speed = std::max(reach.speed, mat.velocity.norm());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/program_enclosure.h"
 
@@ -32,8 +33,8 @@ struct Reach {
   /// The first link with states whose potential falls without an end; what it brings in is not in
   /// `brought`.
   std::optional<std::uint32_t> endless = {};
-  /// The first link with states whose elasticity asks for a variable: nothing bounds what that brings in.
-  std::optional<std::uint32_t> fed = {};
+  /// The first liaison whose elasticity follows a variable: nothing bounds what that brings in.
+  std::optional<engine::LiaisonId> fed = {};
   /// What each variable of the network lies within; null: any number.
   std::shared_ptr<const std::vector<Interval>> variables = {};
   /// Elongations at which a liaison begins in the state of its start [m].

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/parameter_bounds.h"
 #include "sim_node/plan/stability/partner_bound.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
@@ -103,7 +104,7 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   here.rests_differ = longest > start.rest_length;
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint point = start_point(network, set, pair);
-    const double in_pair = stored_in(state_machine, point);
+    const double in_pair = max_stored_in(state_machine, point, here);
     most = std::max(most, in_pair);
     start.stored += in_pair;
     nearest = std::min(nearest, pair.distance);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <vector>
 
 #include "sim_node/plan/stability/entry.h"
@@ -27,9 +28,6 @@ constexpr const char* kJumps = "its force jumps";
 constexpr const char* kNoLargestSlope = "no largest slope of its expression is known";
 constexpr const char* kBeginsAnywhere =
     "a change of state may begin it where it is steep, for its law has no largest slope";
-constexpr const char* kUnboundedVariable =
-    "its law asks for a signal or a quantity that nothing bounds";
-constexpr const char* kMayDriveApart = "what its law asks for may make it drive its ends apart";
 constexpr const char* kDrivesApart = "it drives its ends apart ever harder";
 constexpr const char* kDrivesMotion =
     "its force over the speed drives the motion, and nothing bounds the energy of that";
@@ -240,7 +238,9 @@ bool acts_at(const engine::LinkState& state, double tension) {
 }  // namespace
 
 bool is_of_variables(const char* uncertainty) noexcept {
-  return uncertainty == kUnboundedVariable || uncertainty == kMayDriveApart;
+  if (uncertainty == nullptr) return false;
+  const std::string_view why = uncertainty;
+  return why == kUnboundedVariable || why == kMayDriveApart || why == kMayDriveMotion;
 }
 
 const char* jumps_from_behind(const engine::StateMachine& state_machine,

@@ -20,6 +20,13 @@ struct Slope {
   const char* uncertainty = nullptr;
 };
 
+inline constexpr const char* kUnboundedVariable =
+    "its law asks for a signal or a quantity that nothing bounds";
+inline constexpr const char* kMayDriveApart =
+    "what its law asks for may make it drive its ends apart";
+inline constexpr const char* kMayDriveMotion =
+    "what its law asks for may make it drive the motion by a viscosity below 0";
+
 /// True if a Slope::uncertainty is due to variables that the law asks for.
 bool is_of_variables(const char* uncertainty) noexcept;
 

@@ -160,6 +160,11 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
         weights.stiffness * link.viscosity);  // a pull may fade before it turns anything
   }
   for (const engine::Bend& bend : network.bends) {
+    if (bend.has_states() && laws_ask_for_variable(network.state_machines[bend.state_machine])) {
+      hold(bend.mat_a, bend.mat_b);
+      hold(bend.mat_b, bend.mat_c);
+      continue;
+    }
     add_bend(network, network.at_start(bend), weights.stiffness, weights.viscosity);
   }
   for (const engine::SetLiaison& set : network.sets) {

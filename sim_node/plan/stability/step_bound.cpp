@@ -216,7 +216,7 @@ StepBound certified_bound_at(const engine::NetworkDescription& network, LiaisonG
   for (int round = 0;
        round < kMaxwellRounds && !network.maxwell_links.empty() && std::isfinite(bound.step);
        ++round) {
-    graph.set_step(network, bound.step);
+    graph.set_step(bound.step);
     bound = bound_at(weighted(graph, weights));
   }
   return bound;

@@ -215,7 +215,10 @@ std::optional<ChangingNumber> evaluate_changing(const Value& value, const std::s
   const std::optional<Expression> expression = parse_expression(value, what, problems);
   if (!expression) return std::nullopt;
   for (const ExpressionWord& word : expression->words) {
-    if (word.kind == ExpressionWord::Kind::kName && find_quantity(word.name) != nullptr) {
+    if (word.kind != ExpressionWord::Kind::kName) continue;
+    const bool is_of_bend =
+        find_bend_quantity(word.name) != nullptr && !parameters.find(word.name).has_value();
+    if (find_quantity(word.name) != nullptr || is_of_bend) {
       problems.error(expression->place_of(word),
                      what + " is fixed before the run and cannot ask for '" + word.name + "'");
       return std::nullopt;
@@ -378,6 +381,12 @@ double read_formula(const Value& value, const std::string& what, double fallback
   if (!number) return fallback;
   const Value as_written = Value::scalar(config::number_text(*number), value.place());
   return config::read_number(as_written, what, fallback, range, problems);
+}
+
+engine::Program product_of(engine::Program program, engine::Quantity quantity) {
+  program.code.push_back({Operation::kQuantity, quantity, 0.0, 0});
+  program.code.push_back({Operation::kMultiply, {}, 0.0, 0});
+  return program;
 }
 
 bool asks_outside(const Value& value, const ParameterValues& parameters,

@@ -106,6 +106,9 @@ struct ChangingNumber {
   bool changes() const noexcept { return !program.empty(); }
 };
 
+/// A program times a quantity: a stiffness times the elongation, a viscosity times the speed.
+engine::Program product_of(engine::Program program, engine::Quantity quantity);
+
 /// True if a value is a formula that asks for something outside the link.
 bool asks_outside(const config::Value& value, const ParameterValues& parameters,
                   const std::set<std::string>& signals);

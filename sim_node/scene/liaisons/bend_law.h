@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "node/config/mapping_reader.h"
+#include "sim_node/engine/description/state_machine.h"
 #include "sim_node/scene/language/formula.h"
 
 namespace cordis::scene {
@@ -22,8 +23,31 @@ struct BendLaw {
                                  ///< none
 };
 
+/// The parameters of a bend, or of a state of one, that may follow formulas.
+struct BendParameters {
+  ChangingNumber stiffness;   ///< [N m/rad]
+  ChangingNumber viscosity;   ///< [N m s/rad]
+  ChangingNumber rest_angle;  ///< [rad]
+  bool has_rest = false;      ///< a rest angle is written
+
+  bool change() const noexcept {
+    return stiffness.changes() || viscosity.changes() || rest_angle.changes();
+  }
+};
+
+/// Reads the keys of a state of a bend, or of a bend without states.
+/// @param needs_stiffness  it must be written
+BendParameters read_bend_parameters(config::MappingReader& reader, int space, bool needs_stiffness,
+                                    const ParameterValues& parameters, AskedOutside& outside,
+                                    config::Problems& problems);
+
+/// A state with these parameters.
+engine::LinkState state_of(const BendParameters& parameters);
+
 /// Reads the keys of a liaison of this kind, but for its states: with them it has no stiffness of its own.
+/// @param changing  becomes its parameters where one of them follows a formula: then the law has none
 BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterValues& parameters,
-                      config::Problems& problems);
+                      AskedOutside& outside, config::Problems& problems,
+                      std::optional<BendParameters>& changing);
 
 }  // namespace cordis::scene

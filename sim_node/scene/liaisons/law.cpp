@@ -22,12 +22,27 @@ using engine::LawField;
 class FieldReader {
  public:
   /// @param argument  key of what the law is a function of
+  /// @param formulas  those of its fields are added
   FieldReader(config::MappingReader& reader, const char* argument,
-              const ParameterValues& parameters, Problems& problems)
-      : reader_(reader), argument_(argument), parameters_(parameters), problems_(problems) {}
+              const ParameterValues& parameters, AskedOutside& outside, Problems& problems,
+              std::vector<engine::ParameterFormula>& formulas)
+      : reader_(reader),
+        argument_(argument),
+        parameters_(parameters),
+        outside_(outside),
+        problems_(problems),
+        formulas_(formulas) {}
 
   void operator()(const LawField& field, double& value) {
     const Range range{field.lowest, field.highest, field.lowest_excluded};
+    if (field.follows) {
+      reader_.required_value(field.key);
+      const ChangingNumber changing =
+          optional_changing(reader_, field.key, 0.0, range, parameters_, outside_, problems_);
+      value = changing.number;
+      if (changing.changes()) formulas_.push_back({engine::Parameter::kDepth, changing.program});
+      return;
+    }
     value = field.is_optional
                 ? optional_formula(reader_, field.key, 0.0, range, parameters_, problems_)
                 : required_formula(reader_, field.key, range, parameters_, problems_);
@@ -58,8 +73,8 @@ class FieldReader {
     for (const Value& item : items.items()) {
       config::MappingReader reader(item, std::string(Item::kName) + " of " + reader_.what(),
                                    problems_);
-      Item::visit_fields(list.emplace_back(),
-                         FieldReader(reader, argument_, parameters_, problems_));
+      Item::visit_fields(list.emplace_back(), FieldReader(reader, argument_, parameters_, outside_,
+                                                          problems_, formulas_));
       reader.finish();
     }
   }
@@ -88,7 +103,9 @@ class FieldReader {
   config::MappingReader& reader_;
   const char* argument_;
   const ParameterValues& parameters_;
+  AskedOutside& outside_;
   Problems& problems_;
+  std::vector<engine::ParameterFormula>& formulas_;
   std::size_t first_count_ = 0;
   bool is_whole_ = true;  // all lists so far could be read
 };
@@ -107,7 +124,8 @@ void for_each_law(const Function& function) {
 
 /// Reads the key of a law. @param argument  key of the points of a table
 Law read_law(config::MappingReader& reader, const char* key, const char* argument, bool of_speed,
-             const ParameterValues& parameters, AskedOutside& outside, Problems& problems) {
+             const ParameterValues& parameters, AskedOutside& outside, Problems& problems,
+             std::vector<engine::ParameterFormula>& formulas) {
   const Value value = reader.optional_value(key);
   const std::string what = std::string(key) + " of " + reader.what();
   if (!value.exists()) return {};
@@ -127,7 +145,8 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
   if (!fields.ok()) return law;
   for_each_law([&]<class Type>(Type read) {
     if (kind != Type::kName) return;
-    Type::visit_fields(read, FieldReader(fields, argument, parameters, problems));
+    Type::visit_fields(read,
+                       FieldReader(fields, argument, parameters, outside, problems, formulas));
     if constexpr (requires { read.find_slopes(); }) read.find_slopes();
     law = std::move(read);
   });
@@ -138,14 +157,17 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
 }  // namespace
 
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
-                            AskedOutside& outside, Problems& problems) {
-  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, outside, problems);
+                            AskedOutside& outside, Problems& problems,
+                            std::vector<engine::ParameterFormula>& formulas) {
+  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, outside, problems,
+                  formulas);
 }
 
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
                              AskedOutside& outside, Problems& problems) {
+  std::vector<engine::ParameterFormula> none;  // no law over the speed has such a field
   return read_law(reader, "dissipation", "at_m_per_s", /*of_speed=*/true, parameters, outside,
-                  problems);
+                  problems, none);
 }
 
 }  // namespace cordis::scene

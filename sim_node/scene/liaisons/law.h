@@ -2,15 +2,19 @@
 // writes them.
 #pragma once
 
-#include "sim_node/engine/laws/law.h"
+#include <vector>
+
+#include "sim_node/engine/description/state_machine.h"
 #include "sim_node/scene/language/formula.h"
 
 namespace cordis::scene {
 
 /// Reads the key `elasticity` of a state, a law over elongation or distance; no law when absent.
 /// The language is described in docs/language.md.
+/// @param formulas  those of its fields are added
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
-                            AskedOutside& outside, config::Problems& problems);
+                            AskedOutside& outside, config::Problems& problems,
+                            std::vector<engine::ParameterFormula>& formulas);
 
 /// Reads the key `dissipation`, a law over the speed.
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,

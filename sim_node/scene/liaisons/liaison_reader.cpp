@@ -119,22 +119,28 @@ class LiaisonReader {
       if (reader.has(key)) reader.error_at(key, "a " + kind_name + " has no '" + key + "'");
     };
     const Range range = maxwell ? Range::positive() : Range::not_negative();
+    const double fallback = maxwell ? 1.0 : 0.0;
     const auto required = [&](const char* key) {
-      if (maxwell) return required_formula(reader, key, range, parameters, problems_);
       AskedOutside outside{liaisons_.signals(), law.references};
       reader.required_value(key);
-      return optional_changing(reader, key, 0.0, range, parameters, outside, problems_).number;
+      return optional_changing(reader, key, fallback, range, parameters, outside, problems_);
     };
+    ChangingNumber stiffness;
+    ChangingNumber viscosity;
     if (kind.has_stiffness) {
-      law.stiffness = required(kStiffness);
+      stiffness = required(kStiffness);
     } else {
       refuse(kStiffness);
     }
     if (kind.has_viscosity) {
-      law.viscosity = required(kViscosity);
+      viscosity = required(kViscosity);
     } else {
       refuse(kViscosity);
     }
+    law.stiffness = stiffness.number;
+    law.viscosity = viscosity.number;
+    if (maxwell && (stiffness.changes() || viscosity.changes()))
+      follow(reader, stiffness, viscosity, law);
     if (kind.has_stiffness && !maxwell) {
       read_rest(reader, law, parameters);
     } else {
@@ -143,6 +149,27 @@ class LiaisonReader {
     if (maxwell)
       law.start_force = optional_formula(reader, kStartForce, 0.0, Range{}, parameters, problems_);
     return law;
+  }
+
+  /// Gives a Maxwell element a state machine of one state, from which it takes K and Z.
+  void follow(const MappingReader& reader, const ChangingNumber& stiffness,
+              const ChangingNumber& viscosity, LinkLaw& law) {
+    law.stiffness = law.viscosity = 0.0;
+    take_state(reader, state_of({stiffness, viscosity, {}, false}), law);
+  }
+
+  /// Gives a law a state machine of this state alone, once that has been checked.
+  void take_state(const MappingReader& reader, engine::LinkState state, LinkLaw& law) {
+    engine::StateMachine machine;
+    machine.name = open_.back();
+    machine.states.push_back(std::move(state));
+    try {
+      engine::check_state_machine(machine, reader.what(), law.references.size());
+    } catch (const std::invalid_argument& refusal) {
+      problems_.error(reader.place(), refusal.what());
+      return;
+    }
+    law.state_machine = std::make_shared<const engine::StateMachine>(std::move(machine));
   }
 
   /// True if a parameter of a linear liaison is a formula that asks for something outside the link.
@@ -190,34 +217,20 @@ class LiaisonReader {
       read_rest(reader, law, parameters);
     }
     if (problems_.error_count() != errors_before) return law;
-    engine::StateMachine machine;
-    machine.name = open_.back();
-    engine::LinkState& state = machine.states.emplace_back();
+    engine::LinkState state;
     if (stiffness.changes() || rest.changes()) {
       state.elasticity = engine::Expression{elasticity_of(stiffness, rest)};
     } else {
       state.stiffness = stiffness.number;
     }
     if (viscosity.changes()) {
-      state.dissipation = engine::Expression{
-          times(viscosity.program, {engine::Operation::kQuantity, engine::Quantity::kSpeed, 0, 0})};
+      state.dissipation =
+          engine::Expression{product_of(viscosity.program, engine::Quantity::kSpeed)};
     } else {
       state.viscosity = viscosity.number;
     }
-    try {
-      engine::check_state_machine(machine, reader.what(), law.references.size());
-    } catch (const std::invalid_argument& refusal) {
-      problems_.error(reader.place(), refusal.what());
-      return law;
-    }
-    law.state_machine = std::make_shared<const engine::StateMachine>(std::move(machine));
+    take_state(reader, std::move(state), law);
     return law;
-  }
-
-  static engine::Program times(engine::Program program, const engine::Instruction& factor) {
-    program.code.push_back(factor);
-    program.code.push_back({engine::Operation::kMultiply, {}, 0.0, 0});
-    return program;
   }
 
   /// K times the elongation, or times distance - rest where the rest changes.
@@ -226,8 +239,7 @@ class LiaisonReader {
     engine::Program program = stiffness.program;
     if (!stiffness.changes())
       program.code.push_back({engine::Operation::kConstant, {}, stiffness.number, 0});
-    if (!rest.changes())
-      return times(program, {engine::Operation::kQuantity, engine::Quantity::kElongation, 0, 0});
+    if (!rest.changes()) return product_of(program, engine::Quantity::kElongation);
     program.code.push_back({engine::Operation::kQuantity, engine::Quantity::kDistance, 0, 0});
     program.code.insert(program.code.end(), rest.program.code.begin(), rest.program.code.end());
     program.code.push_back({engine::Operation::kSubtract, {}, 0.0, 0});
@@ -266,10 +278,13 @@ class LiaisonReader {
     LinkLaw law;
     law.kind = LinkKind::kBend;
     const std::size_t errors_before = problems_.error_count();
-    law.bend = read_bend_law(reader, space_, parameters, problems_);
+    AskedOutside outside{liaisons_.signals(), law.references};
+    std::optional<BendParameters> changing;
+    law.bend = read_bend_law(reader, space_, parameters, outside, problems_, changing);
+    if (changing && problems_.error_count() == errors_before)
+      take_state(reader, state_of(*changing), law);
     if (!reader.has("states")) return law;
     StateMachinePlaces places;
-    AskedOutside outside{liaisons_.signals(), law.references};
     engine::StateMachine state_machine =
         read_bend_states(reader, space_, parameters, outside, places, problems_);
     if (problems_.error_count() != errors_before) return law;

@@ -163,12 +163,11 @@ bool rubs(const LinkLaw& law) {
 }
 
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law) {
-  CORDIS_ASSERT(law.kind != LinkKind::kMaxwell);
   if (law.state_machine != nullptr) return law.state_machine;
   engine::StateMachine state_machine;
-  state_machine.states.emplace_back();
-  state_machine.states.back().stiffness = law.stiffness;
-  state_machine.states.back().viscosity = law.viscosity;
+  engine::LinkState& state = state_machine.states.emplace_back();
+  state.stiffness = law.bend ? law.bend->stiffness : law.stiffness;
+  state.viscosity = law.bend ? law.bend->viscosity : law.viscosity;
   return std::make_shared<const engine::StateMachine>(std::move(state_machine));
 }
 
@@ -218,6 +217,7 @@ void StateMachinePool::bind_as(std::uint32_t index,
     for (engine::Law* law : {&state.elasticity, &state.dissipation}) {
       if (auto* expression = std::get_if<engine::Expression>(law)) put(expression->program);
     }
+    for (engine::ParameterFormula& each : state.formulas) put(each.formula);
   }
 }
 
@@ -282,7 +282,9 @@ bool LinkLists::join_alone(const LinkLaw& law, std::uint32_t a, std::uint32_t b,
       state_links.push_back({a, b, law.state_machine_index, rest});
       break;
     case LinkKind::kMaxwell:
-      maxwell_links.push_back({a, b, law.stiffness, law.viscosity, law.start_force});
+      maxwell_links.push_back(
+          {a, b, law.stiffness, law.viscosity, law.start_force,
+           law.state_machine == nullptr ? engine::MaxwellLink::kNone : law.state_machine_index});
       break;
     case LinkKind::kBend:
       CORDIS_ASSERT(false && "a bend joins three MATs");

@@ -37,15 +37,15 @@ using ParameterOverrides = std::map<std::string, double>;
 /// A liaison with its parameters put to values: what one link of it consists of.
 struct LinkLaw {
   LinkKind kind = LinkKind::kLinear;
-  double stiffness = 0.0;             ///< K [N/m], unless kState
-  double viscosity = 0.0;             ///< Z [N s/m], unless kState
+  double stiffness = 0.0;             ///< K [N/m], unless it has a state machine
+  double viscosity = 0.0;             ///< Z [N s/m], unless it has a state machine
   double start_force = 0.0;           ///< [N] of kMaxwell
   std::optional<double> rest_length;  ///< [m]; the distance at the start when there is none
   bool rest_changes = false;          ///< its law has a formula in the place of the rest length
   bool rest_is_radii = false;         ///< the rest length is the sum of the radii of the two balls
   std::optional<double> tension;      ///< [N] at the start, instead of a rest length
   std::shared_ptr<const engine::StateMachine>
-      state_machine;                          ///< for kState, and a bend with states
+      state_machine;  ///< for kState, a bend with states, and what takes K and Z from formulas
   std::vector<VariableReference> references;  ///< from its conditions, until the scene is whole
   std::uint32_t state_machine_index = 0;      ///< its index in the network, once a link uses it
   Reach reach;                                ///< reach for kState
@@ -59,8 +59,8 @@ struct LinkLaw {
 inline constexpr const char* kStiffness = "stiffness_n_per_m";
 inline constexpr const char* kViscosity = "viscosity_n_s_per_m";
 
-/// What the pairs of a set are joined by: a linear law is a state machine of one state.
-/// Precondition: the law is not of kMaxwell.
+/// What the pairs of a set are joined by: a linear law is a state machine of one state. Likewise of a Maxwell
+/// element or a bend without states.
 std::shared_ptr<const engine::StateMachine> state_machine_of(const LinkLaw& law);
 
 /// True if a law, or one beside it, has friction.

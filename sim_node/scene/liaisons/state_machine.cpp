@@ -37,9 +37,7 @@ struct ExitSource {
 void add_changing(config::MappingReader& reader, const char* key, const ChangingNumber& parameter,
                   engine::Quantity over, engine::Law& law) {
   if (!parameter.changes()) return;
-  engine::Program program = parameter.program;
-  program.code.push_back({engine::Operation::kQuantity, over, 0.0, 0});
-  program.code.push_back({engine::Operation::kMultiply, {}, 0.0, 0});
+  engine::Program program = product_of(parameter.program, over);
   if (const auto* beside = std::get_if<engine::Expression>(&law)) {
     program.code.insert(program.code.end(), beside->program.code.begin(),
                         beside->program.code.end());
@@ -65,7 +63,7 @@ LinkState read_physics(config::MappingReader& reader, const ParameterValues& par
                         parameters, outside, problems);
   state.stiffness = stiffness.number;
   state.viscosity = viscosity.number;
-  state.elasticity = read_elasticity(reader, parameters, outside, problems);
+  state.elasticity = read_elasticity(reader, parameters, outside, problems, state.formulas);
   state.dissipation = read_dissipation(reader, parameters, outside, problems);
   add_changing(reader, "stiffness_n_per_m", stiffness, engine::Quantity::kElongation,
                state.elasticity);
@@ -144,18 +142,53 @@ Transition read_exit(config::MappingReader& reader, const ExitSource& source,
   return exit;
 }
 
-/// The key `friction`. @param before  whose stiffness and viscosity count unless it gives its own
-engine::Friction read_friction(config::MappingReader& owner, const engine::Friction& before,
-                               const ParameterValues& parameters, Problems& problems) {
+/// Friction, and the formulas that its coefficients follow.
+struct FrictionRead {
   engine::Friction friction;
+  std::vector<engine::ParameterFormula> formulas;
+};
+
+/// A formula of one value.
+engine::Program constant(double value) {
+  engine::Program program;
+  program.code.push_back({engine::Operation::kConstant, engine::Quantity::kDistance, value, 0});
+  return program;
+}
+
+/// Puts two coefficients where they belong. What follows a formula is 0 as a number, and so is what stands
+/// beside it.
+void put_coefficients(const ChangingNumber& sticking, const ChangingNumber& sliding,
+                      FrictionRead& read) {
+  read.friction.static_coefficient = sticking.number;
+  read.friction.kinetic_coefficient = sliding.number;
+  if (sticking.changes()) {
+    read.friction.kinetic_coefficient = 0.0;
+    read.formulas.push_back({engine::Parameter::kStaticFriction, sticking.program});
+  }
+  if (sliding.changes()) {
+    read.formulas.push_back({engine::Parameter::kKineticFriction, sliding.program});
+  } else if (sticking.changes()) {
+    read.formulas.push_back({engine::Parameter::kKineticFriction, constant(sliding.number)});
+  }
+}
+
+/// The key `friction`. @param before  whose stiffness and viscosity count unless it gives its own
+FrictionRead read_friction(config::MappingReader& owner, const engine::Friction& before,
+                           const ParameterValues& parameters, AskedOutside& outside,
+                           Problems& problems) {
+  FrictionRead read;
+  engine::Friction& friction = read.friction;
   const Value value = owner.optional_mapping("friction");
-  if (!value.exists()) return friction;
+  if (!value.exists()) return read;
   config::MappingReader reader(value, "friction of " + owner.what(), problems);
   const Range not_negative = Range::not_negative();
-  friction.static_coefficient =
-      required_formula(reader, "static", not_negative, parameters, problems);
-  friction.kinetic_coefficient = optional_formula(reader, "kinetic", friction.static_coefficient,
-                                                  not_negative, parameters, problems);
+  reader.required_value("static");
+  const ChangingNumber sticking =
+      optional_changing(reader, "static", 0.0, not_negative, parameters, outside, problems);
+  const ChangingNumber written =
+      optional_changing(reader, "kinetic", 0.0, not_negative, parameters, outside, problems);
+  const ChangingNumber& sliding = reader.has("kinetic") ? written : sticking;
+  put_coefficients(sticking, sliding, read);
   friction.stiffness =
       before.acts()
           ? optional_formula(reader, "stiffness_n_per_m", before.stiffness, Range::positive(),
@@ -163,59 +196,51 @@ engine::Friction read_friction(config::MappingReader& owner, const engine::Frict
           : required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
   friction.viscosity = optional_formula(reader, "viscosity_n_s_per_m", before.viscosity,
                                         Range::between(0.0, kMaxViscosity), parameters, problems);
-  if (friction.kinetic_coefficient > friction.static_coefficient) {
+  const bool are_numbers = !sticking.changes() && !sliding.changes();
+  if (are_numbers && sliding.number > sticking.number) {
     reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
   }
   reader.finish();
-  return friction;
+  return read;
+}
+
+/// Adds formulas to those of a state.
+void add_formulas(const std::vector<engine::ParameterFormula>& formulas, LinkState& state) {
+  state.formulas.insert(state.formulas.end(), formulas.begin(), formulas.end());
 }
 
 /// The key `friction` of a state: a mapping, or `none`.
-std::optional<engine::Friction> read_own_friction(config::MappingReader& state,
-                                                  const engine::Friction& of_liaison,
-                                                  const ParameterValues& parameters,
-                                                  Problems& problems) {
-  const Value value = state.optional_value("friction");
-  if (!value.exists()) return std::nullopt;
-  if (value.text() == "none") return engine::Friction{};
-  return read_friction(state, of_liaison, parameters, problems);
-}
-
-/// The keys of a state of a bend.
-LinkState read_bend_physics(config::MappingReader& reader, const ExitSource& source) {
-  LinkState state;
-  state.stiffness = optional_formula(reader, kBendStiffness, 0.0, Range::not_negative(),
-                                     source.parameters, source.problems);
-  state.viscosity =
-      optional_formula(reader, kBendViscosity, 0.0, Range::between(0.0, kMaxViscosity),
-                       source.parameters, source.problems);
-  const std::size_t errors_before = source.problems.error_count();
-  const double rest =
-      optional_formula(reader, kBendRest, 0.0, {-engine::kMaxRestAngle, engine::kMaxRestAngle},
-                       source.parameters, source.problems);
-  if (!reader.has(kBendRest)) return state;
-  state.rest_angle = rest;
-  if (source.space == 3 && rest != 0.0 && source.problems.error_count() == errors_before)
-    reader.error_at(kBendRest, "in 3 dimensions a bend has no sign, so the rest of " +
-                                   reader.what() + " is straight");
-  return state;
+void read_own_friction(config::MappingReader& reader, const FrictionRead& of_liaison,
+                       const ExitSource& source, LinkState& state) {
+  const Value value = reader.optional_value("friction");
+  if (!value.exists()) {
+    add_formulas(of_liaison.formulas, state);
+  } else if (value.text() == "none") {
+    state.friction = engine::Friction{};
+  } else {
+    const FrictionRead own = read_friction(reader, of_liaison.friction, source.parameters,
+                                           source.outside, source.problems);
+    state.friction = own.friction;
+    add_formulas(own.formulas, state);
+  }
 }
 
 void read_state(const Value::Entry& entry, const std::string& liaison, const ExitSource& source,
-                engine::StateMachine& state_machine, StateMachinePlaces& places) {
+                const FrictionRead& friction, engine::StateMachine& state_machine,
+                StateMachinePlaces& places) {
   const std::string what = "state '" + entry.key + "' of " + liaison;
   config::MappingReader reader(entry.value, what, source.problems);
   if (!is_free_name(entry.key)) {
     source.problems.error(entry.key_place, "'" + entry.key + "' cannot be the name of a state");
   }
   const bool is_of_bend = source.owner == ExpressionOwner::kBend;
-  LinkState state = is_of_bend
-                        ? read_bend_physics(reader, source)
-                        : read_physics(reader, source.parameters, source.outside, source.problems);
+  LinkState state =
+      is_of_bend ? state_of(read_bend_parameters(reader, source.space,
+                                                 /*needs_stiffness=*/false, source.parameters,
+                                                 source.outside, source.problems))
+                 : read_physics(reader, source.parameters, source.outside, source.problems);
   state.name = entry.key;
-  if (!is_of_bend)
-    state.friction =
-        read_own_friction(reader, state_machine.friction, source.parameters, source.problems);
+  if (!is_of_bend) read_own_friction(reader, friction, source, state);
   state.first_exit = static_cast<std::uint32_t>(state_machine.exits.size());
   std::uint32_t next_slot = 0;
   const Value exits = reader.optional_sequence("exits");
@@ -251,10 +276,11 @@ void check_slip(const engine::StateMachine& state_machine, const StateMachinePla
 }
 
 /// `states` and `start`. @param space_of_bend  dimensions; nothing: they are those of links
+/// @param friction  of the liaison
 void read_states(config::MappingReader& reader, std::optional<int> space_of_bend,
-                 const ParameterValues& parameters, AskedOutside& outside,
-                 engine::StateMachine& state_machine, StateMachinePlaces& places,
-                 Problems& problems) {
+                 const FrictionRead& friction, const ParameterValues& parameters,
+                 AskedOutside& outside, engine::StateMachine& state_machine,
+                 StateMachinePlaces& places, Problems& problems) {
   const Value states = reader.optional_mapping("states");
   std::vector<std::string> names;
   for (const Value::Entry& entry : states.entries()) names.push_back(entry.key);
@@ -278,7 +304,7 @@ void read_states(config::MappingReader& reader, std::optional<int> space_of_bend
                           space_of_bend ? ExpressionOwner::kBend : ExpressionOwner::kLink,
                           space_of_bend.value_or(0)};
   for (const Value::Entry& entry : states.entries())
-    read_state(entry, reader.what(), source, state_machine, places);
+    read_state(entry, reader.what(), source, friction, state_machine, places);
 }
 
 constexpr std::array<const char*, 7> kSignsOfStateMachine{
@@ -295,14 +321,16 @@ engine::StateMachine read_state_machine(config::MappingReader& reader,
                                         const ParameterValues& parameters, AskedOutside& outside,
                                         StateMachinePlaces& places, Problems& problems) {
   engine::StateMachine state_machine;
-  state_machine.friction = read_friction(reader, {}, parameters, problems);
+  const FrictionRead friction = read_friction(reader, {}, parameters, outside, problems);
+  state_machine.friction = friction.friction;
   if (!reader.has("states")) {
     state_machine.states.push_back(read_physics(reader, parameters, outside, problems));
+    add_formulas(friction.formulas, state_machine.states.back());
     places.states.push_back({reader.place(), true});
     reader.optional_value("states");
     return state_machine;
   }
-  read_states(reader, std::nullopt, parameters, outside, state_machine, places, problems);
+  read_states(reader, std::nullopt, friction, parameters, outside, state_machine, places, problems);
   check_slip(state_machine, places, reader.what(), problems);
   return state_machine;
 }
@@ -311,7 +339,7 @@ engine::StateMachine read_bend_states(config::MappingReader& reader, int space,
                                       const ParameterValues& parameters, AskedOutside& outside,
                                       StateMachinePlaces& places, Problems& problems) {
   engine::StateMachine state_machine;
-  read_states(reader, space, parameters, outside, state_machine, places, problems);
+  read_states(reader, space, {}, parameters, outside, state_machine, places, problems);
   return state_machine;
 }
 

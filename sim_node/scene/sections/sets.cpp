@@ -175,14 +175,6 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                       "take a liaison without 'friction', or 'space: 2'");
       return;
     }
-    if (laws_ask_for_variable(*state_machine)) {
-      reader.error_at(
-          "liaison",
-          "a law of a liaison of sets asks for nothing outside its pair, and the liaison '" +
-              reader.optional_text("liaison", "") + "' does",
-          "write its parameters as numbers, or link the MATs one by one");
-      return;
-    }
     if (part.rest_length && *part.rest_length < 0.0) {
       reader.error_at(reader.has("rest_m") ? "rest_m" : "liaison",
                       "the rest length of a liaison of sets must be >= 0, got " +
@@ -190,8 +182,9 @@ void add_set(Assembly& assembly, LinkEntry& entry, const std::vector<std::uint32
                       "a state may have one below 0: 'rest' of an exit");
       return;
     }
-    const bool by_radii = !part.rest_length && radii > 0.0;
-    if (!part.rest_length && !by_radii && depends_on_rest(*state_machine)) {
+    const bool by_radii = !part.rest_length && radii > 0.0 && !part.rest_changes;
+    const bool has_rest = part.rest_length || by_radii || part.rest_changes;
+    if (!has_rest && depends_on_rest(*state_machine)) {
       reader.error_at("liaison", "a liaison of sets whose MATs have no radius needs a 'rest_m'");
       return;
     }
