@@ -180,7 +180,8 @@ TEST(FormulaOfLiaison, PumpsABendAtTwiceItsFrequency) {
 }
 
 TEST(FormulaOfLiaison, TurnsABendByItsRestAngle) {
-  // w = v / l - R(t) u / l is linear in the place of the mass: m x'' = -(B / l^2) (v - R(t) u)
+  // w = v / l - R(t) u / l is linear in the place of the mass.
+  // m x'' = -(B / l^2) (v - R(t) u)
   constexpr double kTime = 1.2;
   const auto truth = integrated<4>({0.1, 0.0, 0.0, 0.0}, kTime, [](double t, const auto& y) {
     const double angle = 0.4 * std::sin(5.0 * t);
@@ -422,6 +423,59 @@ signals:
   expect_closed(world, 5e-2);
 }
 
+TEST(FormulaOfLiaison, LeavesARestAngleThatIsRestoredWhileItIsNotFinite) {
+  const Scene scene = sound_scene(
+      1, on_bend("stiffness_n_m_per_rad: 0.1, rest_rad: 0.3 * sqrt(1 - 10 * time_s)"));
+  engine::World world = started(scene);
+  step_to(world, 0.15);
+  const double rest = world.rest_angle_of_bend(0);
+  EXPECT_LT(rest, 0.03);  // as it was just before 0.1 s
+  const engine::Snapshot snapshot = world.snapshot();
+  engine::World again = started(scene);
+  step_to(again, 0.05);
+  ASSERT_GT(again.rest_angle_of_bend(0), 0.2);
+  again.restore(snapshot);
+  EXPECT_EQ(again.rest_angle_of_bend(0), rest);
+  for (int n = 0; n < 200; ++n) {
+    world.step();
+    again.step();
+  }
+  EXPECT_EQ(again.rest_angle_of_bend(0), rest);
+  EXPECT_EQ(again.state_hash(), world.state_hash());
+}
+
+TEST(FormulaOfLiaison, OfFrictionIsThatOfItsStateAlone) {
+  // The first state has the formula, and the second slides freely whatever that is.
+  const auto path = [](const std::string& coefficient, const std::string& start) {
+    const std::string text = test::filled(R"(liaisons:
+  t:
+    friction: {static: 0.1, stiffness_n_per_m: 100}
+    start: <start>
+    states:
+      rough: {stiffness_n_per_m: 300, pulls: false, friction: {static: <coefficient>, stiffness_n_per_m: 100}}
+      smooth: {stiffness_n_per_m: 300, pulls: false, friction: {static: 0, stiffness_n_per_m: 100}, exits: [{to: rough, when: age_s > 0.05}]}
+matter:
+  a: {kind: fixed, at_m: [0, 0]}
+  p: {kind: mass, mass_kg: 0.2, at_m: [[0.01, 0.1], [0.02, 0.2]], velocity_m_per_s: [0.1, -0.5]}
+links:
+  - {liaison: t, between_sets: [p, a], rest_m: 0.12, range_m: 0.12, name: l}
+  - {liaison: t, within: p, rest_m: 0.12, range_m: 0.12}
+)",
+                                          {{"coefficient", coefficient}, {"start", start}});
+    engine::World world = started(sound_scene(2, text));
+    std::vector<Vec3> places;
+    for (int n = 0; n < 120; ++n) {
+      world.step();
+      places.push_back(world.position(1));
+    }
+    return places;
+  };
+  for (const char* start : {"rough", "smooth"}) {
+    EXPECT_EQ(path("0.4", start), path("0.4 + 0 * time_s", start)) << start;
+    EXPECT_NE(path("0.1", start), path("0.4 + 0 * time_s", start)) << start;
+  }
+}
+
 TEST(FormulaOfLiaison, IsSetToANumberWhileARunGoesOn) {
   const std::string maxwell = on_maxwell(
       "parameters: {swing: 60}, stiffness_n_per_m: 100 + swing * sin(9 * time_s), "
@@ -470,6 +524,10 @@ TEST(CertificateOfFormulas, IsThatOfTheLargestValue) {
   expect_as_with(sound_scene(1, on_maxwell("stiffness_n_per_m: 100 + 60 * sin(9 * time_s), "
                                            "viscosity_n_s_per_m: 5 + 2 * cos(4 * x)")),
                  sound_scene(1, on_maxwell("stiffness_n_per_m: 160, viscosity_n_s_per_m: 7")));
+  // Where it jumps from 0 to 16000 N/m, a step has half the rate.
+  expect_as_with(sound_scene(1, on_maxwell("stiffness_n_per_m: 8000 * (1 + sin(900 * time_s)), "
+                                           "viscosity_n_s_per_m: 20")),
+                 sound_scene(1, on_maxwell("stiffness_n_per_m: 16000, viscosity_n_s_per_m: 40")));
   expect_as_with(sound_scene(1, on_bend("stiffness_n_m_per_rad: 0.1 * (1 + 0.4 * tanh(height)), "
                                         "viscosity_n_m_s_per_rad: 1.0e-5 * (1 + sin(time_s))")),
                  sound_scene(1, on_bend("stiffness_n_m_per_rad: 0.14, "

@@ -72,7 +72,7 @@ struct StateLink {
 /// ends. A Maxwell element and a Link in parallel are a standard linear solid.
 ///
 /// K and Z may follow variables of the network, as those of a state machine of one state. The spring keeps its
-/// elongation F / K, so that F(n-1) counts K(n) / K(n-1) times, and K / Z in e^(-K dt / Z) is the mean of both
+/// elongation F / K, so that F(n-1) counts K(n) / K(n-1) times. K / Z in e^(-K dt / Z) is the mean of both
 /// steps. A K that is not above 0 has no force, but the spring keeps its elongation; nor has such a Z.
 struct MaxwellLink {
   std::uint32_t mat_a = 0;

@@ -40,8 +40,8 @@ enum class Parameter : std::uint8_t {
   kDepth             ///< LennardJones::well_depth of its elasticity
 };
 
-/// A parameter that follows variables of the network. A value below 0 counts as 0, but for an angle; one
-/// that is not finite as 0, and an angle then stays what it was.
+/// A parameter that follows variables of the network. A value that is below 0 or not finite counts
+/// as 0. An angle may be below 0, and stays what it was where it is not finite.
 struct ParameterFormula {
   Parameter parameter = Parameter::kRestAngle;
   Program formula;  ///< asks for variables alone
@@ -129,7 +129,7 @@ double touch_distance(const StateMachine& state_machine) noexcept;
 /// The most states a state machine may have.
 inline constexpr std::size_t kMaxStates = 64;
 
-/// True if a law or a formula of a state asks for a variable of the network: then its force may change whatever
+/// True if a law or a formula of a state asks for a variable of the network. Then its force may change whatever
 /// its own link does.
 bool asks_for_variable(const LinkState& state) noexcept;
 /// True if a law of any of its states does.

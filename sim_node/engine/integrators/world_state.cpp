@@ -325,7 +325,7 @@ Archive WorldState::serialize(Archive archive) {
   maxwell_links.serialize(archive);
   bends.serialize(archive, table);
   log.serialize(archive);
-  if (!table.variables().empty()) archive.reals(table.variables());
+  if (laws_ask_for_variables) archive.reals(table.variables());
   account.serialize(archive);
   if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last
   scheme->serialize(archive);

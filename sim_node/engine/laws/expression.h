@@ -42,8 +42,8 @@ struct Expression {
   double potential(const LawPoint& link) const noexcept;
   /// The distance at which that is 0 [m].
   double distance_of_no_potential(const LawPoint& link) const noexcept;
-  /// How many instructions the factor has, where the tension is a factor of variables alone, at least one, times
-  /// this quantity: a stiffness over the elongation, a viscosity over the speed. 0 where it is no such product.
+  /// How many instructions the factor has, where the tension is a factor of variables times this quantity: a
+  /// stiffness times the elongation, a viscosity times the speed. 0 where it is no such product.
   std::size_t factor_size(Quantity of) const noexcept;
   /// The value of that factor; 0 where it is not finite. Precondition: it is one of the product.
   double factor(std::size_t size, const double* variables) const noexcept;

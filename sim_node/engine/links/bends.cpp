@@ -66,11 +66,16 @@ void BendArray::take_parameters(const StateTable& table) noexcept {
 }
 
 void BendArray::put_state(const StateTable& table, Row& row) noexcept {
+  if (const std::optional<double> rest = table.rest_angle(states_.state_index(row.state_row)))
+    states_.set_rest_angle(row.state_row, *rest);
+  put_state_at_rest_angle(table, row);
+}
+
+/// Likewise, with the rest angle it has.
+void BendArray::put_state_at_rest_angle(const StateTable& table, Row& row) noexcept {
   const StateIndex state = states_.state_index(row.state_row);
   row.stiffness = table.stiffness(state);
   row.viscosity_over_dt = table.viscosity(state) / dt_;
-  if (const std::optional<double> rest = table.rest_angle(state))
-    states_.set_rest_angle(row.state_row, *rest);
   row.shape.set_rest(states_.rest_angle(row.state_row), dimension_);
 }
 
@@ -298,7 +303,8 @@ void BendArray::serialize(Archive& archive, const StateTable& table) {
     if (row.viscosity_over_dt == 0.0 && row.state_row == kNoRow)
       std::fill_n(viscous_moment_.data() + 3 * l, 3, 0.0);
   }
-  for (const std::uint32_t bend : bend_of_row_) put_state(table, rows_[bend]);
+  // The variables are not restored yet.
+  for (const std::uint32_t bend : bend_of_row_) put_state_at_rest_angle(table, rows_[bend]);
 }
 
 }  // namespace cordis::engine

@@ -114,6 +114,7 @@ class BendArray {
                           const ForceColumns& columns) noexcept;
   static BendSides sides_of(const Row& row, const ForceColumns& columns) noexcept;
   void put_state(const StateTable& table, Row& row) noexcept;
+  void put_state_at_rest_angle(const StateTable& table, Row& row) noexcept;
   static void add_moment(const Row& row, const Vec3& moment, double* force) noexcept;
   Vec3 viscous_moment(const Row& row, const Vec3& bend, const Vec3& moved) const noexcept;
   Vec3 last_viscous_moment(std::size_t row) const noexcept;

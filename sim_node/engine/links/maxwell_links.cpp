@@ -87,8 +87,8 @@ double MaxwellArray::elongation_increment(std::uint32_t row,
   return lengths > 0.0 ? dot(along + before, along - before) / lengths : 0.0;
 }
 
-/// The spring keeps its elongation. That it takes the whole way of the ends during the step is of no account:
-/// what is wrong with it is of the order of the other errors of a step.
+/// The spring keeps its elongation. It takes the whole way of the ends during the step: an error of the order of
+/// the others of a step.
 double MaxwellArray::follow(const StateTable& table, const ForceColumns& columns) noexcept {
   double energy = 0.0;
   for (Following& element : following_) {

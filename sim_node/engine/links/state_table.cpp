@@ -238,7 +238,7 @@ void StateTable::Content::find(Following& parameters) noexcept {
         std::get<Expression>(described.dissipation).factor(parameters.viscosity_size, values);
   if (const Program* const rest = formula_of(described, Parameter::kRestAngle)) {
     const double angle = value_of({rest->code.data(), rest->code.size(), values});
-    if (std::isfinite(angle)) parameters.rest_angle = angle;
+    parameters.rest_angle = std::isfinite(angle) ? std::optional(angle) : std::nullopt;
   }
   parameters.static_friction = value_of_formula(described, Parameter::kStaticFriction);
   parameters.kinetic_friction = value_of_formula(described, Parameter::kKineticFriction);

@@ -48,7 +48,7 @@ class StateTable {
   /// What stiffness() was before the variables were kept.
   double stiffness_before(StateIndex state) const noexcept;
   double dt() const noexcept;  ///< [s]
-  /// Rest angle that follows variables [rad]; nothing without one.
+  /// Rest angle that follows variables [rad]; nothing without one, or while it is not finite.
   std::optional<double> rest_angle(StateIndex state) const noexcept;
   /// The friction in a state.
   Friction friction(StateIndex state) const noexcept;

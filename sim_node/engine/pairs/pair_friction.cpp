@@ -54,11 +54,12 @@ void PairFriction::adopt(const StateMachine& state_machine, bool shows_slid) {
   if (!acts()) return;
   shows_slid_ = shows_slid;
   terms_.clear();
-  is_one_ = true;
+  is_one_ = state_machine.states.size() == 1 ||
+            std::ranges::all_of(state_machine.states,
+                                [](const LinkState& state) { return state.formulas.empty(); });
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const Friction& friction = friction_in(state_machine, s);
-    const bool may_differ = s > 0 && !state_machine.states[s].formulas.empty();
-    is_one_ = is_one_ && friction == friction_in(state_machine, 0) && !may_differ;
+    is_one_ = is_one_ && friction == friction_in(state_machine, 0);
     terms_.push_back({friction.stiffness, friction.acts() ? 1.0 / friction.stiffness : 0.0,
                       friction.viscosity / dt_, friction.static_coefficient,
                       friction.kinetic_coefficient});

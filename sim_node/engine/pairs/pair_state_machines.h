@@ -61,8 +61,8 @@ class PairStateMachines {
   void step(const PairStep& step, const MemberColumns& members, const double* slid,
             const PairRest& rest, double range, PairBlock& block) noexcept;
 
-  /// Adds what parameters that follow variables bring into the pairs of a block that are in range or bound, less
-  /// what they bring into such pairs at their range. Called by step(), or for a block that has none.
+  /// Adds what parameters that follow variables bring into the pairs of a block that are in range or bound.
+  /// What they bring into such pairs at their range is taken off. Called by step(), or for a block that has none.
   void add_parameter_energy(const PairStep& step, const PairRest& rest, double range,
                             PairBlock& block) noexcept;
   /// Brought so in this step [J].

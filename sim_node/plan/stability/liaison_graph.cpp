@@ -344,7 +344,9 @@ void LiaisonGraph::set_step(double step) {
   for (Edge& edge : edges) {
     if (edge.liaison.kind != LiaisonKind::kMaxwellLink) continue;
     const engine::MaxwellLink& link = maxwell_links[edge.liaison.index];
-    const double turn = 0.5 * link.stiffness * step / link.viscosity;
+    // Stepped with the mean of the rates at two steps: the least is that of one K at its least.
+    const double least = link.stiffness - edge.variation;
+    const double turn = 0.25 * (least + link.stiffness) * step / link.viscosity;
     edge.stiffness = turn > 0.0 ? link.stiffness * std::tanh(turn) / turn : link.stiffness;
   }
 }

@@ -24,8 +24,8 @@ LinearBounds linear_bounds(const engine::NetworkDescription& network, const engi
 LinearBounds linear_bounds(const engine::NetworkDescription& network,
                            const engine::MaxwellLink& link, const Reach& reach);
 
-/// The most that a state machine stores at a point in the state of its start [J], at any values of the variables;
-/// twice that of a spring. 0 where nothing bounds it.
+/// The most that a state machine stores at a point in the state of its start [J], at any values of the variables.
+/// For a spring it is twice that. 0 where nothing bounds it.
 double max_stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point,
                      const Reach& reach);
 
