@@ -6,6 +6,9 @@ target_include_directories(cordis_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(cordis_options INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
 
+# What is not the engine compiles in a fifth less time than with -O3, and waits for others anyway.
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+
 # Faults of memory end a program instead of serving a stranger: bounds of the standard C functions and stack frames are
 # checked, and what a loader writes is read-only afterwards. Debian's compilers make position-independent programs. None of it changes a result; docs/security.md.
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CORDIS_SANITIZE)

@@ -1,6 +1,7 @@
 // tests/integration/control_test.cpp -- a session is changed while it runs.
 #include "idl/control.h"
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -646,9 +647,14 @@ class ControlOfFiles : public ControlInRealtime {
     command.verb(msg::VERB_LOAD);
     command.argument("'" + path + "'");
     command.command_id(++commands_);
-    EXPECT_TRUE(commands.write(command));
+    // sim_node may know of this reader later than this reader of sim_node: until then no reply comes.
     msg::ControlReply reply;
+    auto next = std::chrono::steady_clock::now();
     EXPECT_TRUE(eventually([&] {
+      if (std::chrono::steady_clock::now() >= next) {
+        EXPECT_TRUE(commands.write(command));
+        next += std::chrono::seconds(1);
+      }
       return replies.take(reply) && reply.command_id() == command.command_id();
     })) << path;
     EXPECT_FALSE(reply.accepted()) << path;

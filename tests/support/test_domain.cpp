@@ -3,7 +3,9 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include <unistd.h>
 
@@ -14,6 +16,32 @@ namespace {
 
 constexpr int kFirstDomain = 10;
 constexpr int kDomainCount = 92;
+
+/// Removed at the end of the process, unless there was one already.
+class RuntimeFolder {
+ public:
+  RuntimeFolder() {
+    if (std::getenv(kVariable) != nullptr) return;
+    std::string pattern = "/tmp/cordis-tests-XXXXXX";
+    if (mkdtemp(pattern.data()) == nullptr) {
+      std::perror("no folder for the sessions of this test");
+      std::abort();
+    }
+    path_ = pattern;
+    setenv(kVariable, path_.c_str(), /*overwrite=*/0);
+  }
+  ~RuntimeFolder() {
+    std::error_code ignored;
+    if (!path_.empty() && getpid() == owner_) std::filesystem::remove_all(path_, ignored);
+  }
+  RuntimeFolder(const RuntimeFolder&) = delete;
+  RuntimeFolder& operator=(const RuntimeFolder&) = delete;
+
+ private:
+  static constexpr const char* kVariable = "CORDIS_RUNTIME_DIR";
+  std::string path_;
+  pid_t owner_ = getpid();  // a fork of it leaves the folder
+};
 
 int find_free_domain() {
   const int start = static_cast<int>(getpid()) % kDomainCount;
@@ -29,8 +57,7 @@ int find_free_domain() {
 
 int own_domain() {
   static const int kDomain = [] {
-    const std::string folder = "/tmp/cordis-tests-" + std::to_string(geteuid());
-    setenv("CORDIS_RUNTIME_DIR", folder.c_str(), /*overwrite=*/0);
+    static const RuntimeFolder kFolder;
     return find_free_domain();
   }();
   return kDomain;

@@ -3,7 +3,7 @@
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { hostname, tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { LONGEST_MS, need, pageIsBuilt, Session, skip, until } from './session.mjs';
+import { LONGEST_MS, need, pageIsBuilt, pause, Session, skip, until } from './session.mjs';
 
 const CHROMIUM = '/usr/bin/chromium';
 /** A name of this machine that is not loopback to a browser. */
@@ -73,6 +73,16 @@ export async function openPage(session, url) {
   session.pageErrors = [];
   session.page = session.browser.pages()[0] ?? (await session.browser.newPage());
   session.page.on('pageerror', (error) => session.pageErrors.push(String(error)));
+  session.askPage = async () => {
+    const asked = session.page
+      .evaluate(() => {
+        const { connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, errors } = window.viz;
+        return JSON.stringify({ connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, errors });
+      })
+      .catch((error) => String(error));
+    const state = await Promise.race([asked, pause(5000).then(() => 'no answer')]);
+    session.pageState = `--- the page\n${state}\n`;
+  };
   await session.page.goto(url);
   await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
 }

@@ -3,13 +3,17 @@
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { tmpdir, userInfo } from 'node:os';
+import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { parseArgs } from 'node:util';
 
 const SKIPPED = 77;
-process.env.CORDIS_RUNTIME_DIR ??= `/tmp/cordis-tests-${userInfo().uid}`; // sessions of tests are recorded there
+// Sessions of this test are recorded there, where no other test finds them.
+if (process.env.CORDIS_RUNTIME_DIR === undefined) {
+  const folder = (process.env.CORDIS_RUNTIME_DIR = mkdtempSync(join(tmpdir(), 'cordis-tests-')));
+  process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+}
 
 const { values: options } = parseArgs({
   options: {
@@ -110,6 +114,7 @@ class Program {
 /** The programs of one test, in a DDS domain of their own. */
 export class Session {
   programs = [];
+  pageState = ''; // of the page, as it was when a case failed
   folder = mkdtempSync(join(tmpdir(), 'cordis-viz-'));
 
   static opened = null; // the one of this process
@@ -153,7 +158,7 @@ export class Session {
 
   logs() {
     const errors = (this.pageErrors ?? []).map((error) => `--- error in the page: ${error}\n`).join('');
-    return errors + this.programs.map((p) => `--- ${p.name} (${p.running ? 'running' : 'ended'})\n${p.log}`).join('\n');
+    return errors + this.pageState + this.programs.map((p) => `--- ${p.name} (${p.running ? 'running' : 'ended'})\n${p.log}`).join('\n');
   }
 }
 
@@ -174,6 +179,7 @@ export async function runCases(cases, openSession, atMostMs = TEST_MS) {
         console.log(`ok      ${name} (${Date.now() - begin} ms)`);
       } catch (error) {
         ++failed;
+        await session.askPage?.();
         console.error(`FAILED  ${name}\n${error.stack}\n${session.logs()}`);
       }
     }
