@@ -83,6 +83,14 @@ export async function openPage(session, url) {
     const state = await Promise.race([asked, pause(5000).then(() => 'no answer')]);
     session.pageState = `--- the page\n${state}\n`;
   };
+  session.recover = async () => {
+    try {
+      await session.page.reload();
+      await until('the page draws again', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
+    } catch (error) {
+      console.error(String(error));
+    }
+  };
   await session.page.goto(url);
   await until('the page draws', () => session.page.evaluate(() => (window.viz?.framesDrawn ?? 0) > 0));
 }

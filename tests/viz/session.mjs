@@ -181,6 +181,7 @@ export async function runCases(cases, openSession, atMostMs = TEST_MS) {
         ++failed;
         await session.askPage?.();
         console.error(`FAILED  ${name}\n${error.stack}\n${session.logs()}`);
+        await session.recover?.(); // for the cases that follow
       }
     }
   } catch (error) {

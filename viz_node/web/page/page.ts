@@ -279,11 +279,11 @@ export class Page {
     const drawn = this.view !== null && !this.frozen && !this.pendingIsLate;
     this.connection.acknowledge(drawn ? frame.sequence : 0);
     if (this.view === null || this.frozen) return;
-    this.plots.traces.append(frame.simulatedS);
-    this.plotsDirty = true;
     ++this.framesDrawn;
     this.lastFrame = frame;
     this.pendingIsLate = false;
+    this.plots.traces.append(frame.simulatedS);
+    this.plotsDirty = true;
     const lagS = Math.max(0, this.clock.serverMs(performance.now()) * 1e-3 - frame.takenNsec * 1e-9);
     // Smoothed so that it can be read; a view that falls behind shows within a second.
     this.lagS = Number.isNaN(this.lagS) || !drawn ? lagS : this.lagS + 0.1 * (lagS - this.lagS);
@@ -468,6 +468,7 @@ export class Page {
     this.frozen = wanted;
     this.plots.hold(wanted);
     this.toggle('h', wanted);
+    this.refresh();
   }
 
   private fileName(ending: string): string {
