@@ -40,6 +40,7 @@ World::World(std::shared_ptr<const Network> network, VectorWidth width) {
   if (state_->laws_ask_for_variables || state_->drives_ask_for_variables) {
     read_variables(state_->description().variables, *this, state_->table.variables());
     state_->take_parameters();
+    state_->maxwell_links.begin();
   }
   // The masses are where the network has them, and no integrator knows their velocities yet.
   state_->port_inputs.find_driven_forces(0, state_->table.variables().data());
@@ -331,7 +332,7 @@ void World::end_external_forces() noexcept {
 }
 
 std::size_t World::max_values_of_state() const noexcept {
-  return state_->serialize(Archive::measuring()).size();
+  return state_->serialize(Archive::measuring(), /*with_variables=*/true).size();
 }
 
 void World::copy_state(std::vector<double>& room) const noexcept {
@@ -351,8 +352,11 @@ bool World::take_state(std::span<const double> copy, std::uint64_t step_count) {
 
 bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   const FloatMode mode;
+  // A number may have taken the place of the last formula, or a formula that of a number.
+  const bool with_variables =
+      state_->laws_ask_for_variables || before.state_->laws_ask_for_variables;
   room.clear();
-  before.state_->serialize(Archive::saving(room));
+  before.state_->serialize(Archive::saving(room), with_variables);
   state_->sets.make_room_of(room.size());
   const bool same_mats = network().mat_count() == before.network().mat_count();
   const bool same_sets =
@@ -360,13 +364,14 @@ bool World::take_over(const World& before, std::vector<double>& room) noexcept {
   const bool same_integrator =
       network().description().integrator == before.network().description().integrator;
   const bool both_freeze = (state_->freezing == nullptr) == (before.state_->freezing == nullptr);
-  if (!same_mats || !same_sets || !same_integrator || !both_freeze || !state_->matches(room)) {
+  if (!same_mats || !same_sets || !same_integrator || !both_freeze ||
+      !state_->matches(room, with_variables)) {
     return false;
   }
 
   const Energy energy_before = before.energy();
   const double stored_before = before.state_->stored_energy();
-  state_->take(room);
+  state_->take(room, with_variables);
   state_->step_count = before.state_->step_count;
   StepEnergy change;
   change.switching = state_->stored_energy() - stored_before;

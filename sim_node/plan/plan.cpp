@@ -97,6 +97,7 @@ struct ModalLoad {
 
 /// What a liaison surely adds to a block of modes: K + 2 Z / dt, of one with states as it acts at the start.
 double surely_as_stiff(const engine::NetworkDescription& network, const Edge& edge) {
+  if (edge.follows) return 0.0;
   if (edge.liaison.kind != LiaisonKind::kStateLink) {
     return edge.stiffness - edge.variation + 2.0 * edge.viscosity / network.step;
   }

@@ -10,6 +10,7 @@
 
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/port_limit.h"
 #include "sim_node/scene/parameters.h"
 #include "tests/scene/bad_scene.h"
 #include "tests/support/filled.h"
@@ -424,8 +425,8 @@ signals:
 }
 
 TEST(FormulaOfLiaison, LeavesARestAngleThatIsRestoredWhileItIsNotFinite) {
-  const Scene scene = sound_scene(
-      1, on_bend("stiffness_n_m_per_rad: 0.1, rest_rad: 0.3 * sqrt(1 - 10 * time_s)"));
+  const Scene scene =
+      sound_scene(1, on_bend("stiffness_n_m_per_rad: 0.1, rest_rad: 0.3 * sqrt(1 - 10 * time_s)"));
   engine::World world = started(scene);
   step_to(world, 0.15);
   const double rest = world.rest_angle_of_bend(0);
@@ -474,6 +475,40 @@ links:
     EXPECT_EQ(path("0.4", start), path("0.4 + 0 * time_s", start)) << start;
     EXPECT_NE(path("0.1", start), path("0.4 + 0 * time_s", start)) << start;
   }
+}
+
+TEST(FormulaOfLiaison, OfAStartForceWithoutAStiffnessIsNoForce) {
+  const Scene scene = sound_scene(
+      1, on_maxwell("stiffness_n_per_m: 100 * sin(3 * time_s) ^ 2, viscosity_n_s_per_m: 5, "
+                    "start_force_n: 5"));
+  engine::World world = started(scene);
+  EXPECT_LT(world.energy().total(), 1.0);
+  for (int n = 0; n < 500; ++n) world.step();
+  EXPECT_LT(std::abs(world.position(1).x()), 2.0);
+  expect_closed(world, 1e-2);
+}
+
+TEST(FormulaOfLiaison, OfARestAngleThatIsNeverFiniteChangesNothing) {
+  const Scene scene =
+      sound_scene(1, on_bend("stiffness_n_m_per_rad: 0.1, rest_rad: 0.3 * sqrt(-1 - height ^ 2)"));
+  engine::World world = started(scene);
+  EXPECT_EQ(world.rest_angle_of_bend(0), 0.0);
+  for (int n = 0; n < 50; ++n) world.step();
+  EXPECT_EQ(world.rest_angle_of_bend(0), 0.0);
+}
+
+TEST(FormulaOfLiaison, OfAContactBelowZeroKeepsTheAccount) {
+  const auto run = [](double rate) {
+    engine::World world = started(at_rate(
+        two_balls("{stiffness_n_per_m: 200 + 900 * cos(25 * time_s), pulls: false}", true), rate));
+    step_to(world, 1.0);
+    const engine::Energy energy = world.energy();
+    EXPECT_LT(std::abs(energy.residual()), 1e-10 * energy.largest);
+    return energy.integration_error() / energy.largest;
+  };
+  const double error = run(2000.0);
+  EXPECT_LT(std::abs(error), 5e-3);
+  EXPECT_LT(std::abs(run(8000.0)), 0.2 * std::abs(error));
 }
 
 TEST(FormulaOfLiaison, IsSetToANumberWhileARunGoesOn) {
@@ -539,6 +574,26 @@ TEST(CertificateOfFormulas, IsThatOfTheLargestValue) {
                      "sin(x), stiffness_n_per_m: 100}}"),
                  set("{stiffness_n_per_m: 200, pulls: false, friction: {static: 0.8, "
                      "stiffness_n_per_m: 100}}"));
+}
+
+TEST(CertificateOfFormulas, CountsNothingAsSureThatMayBeLess) {
+  // A device is refused for what surely acts on it.
+  const auto least = [](const char* law) {
+    const Scene scene = sound_scene(1, test::filled(R"(liaisons:
+  t: <law>
+matter:
+  hand: {kind: port, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0.1}
+links:
+  - {liaison: t, between: [hand, b]}
+)",
+                                                    {{"law", law}}));
+    return plan::port_loads(plan::liaison_graph(scene.network), plan::LoadBound::kMin)[0].stiffness;
+  };
+  EXPECT_EQ(least("{kind: spring, stiffness_n_per_m: 5010}"), 5010.0);
+  EXPECT_EQ(least("{kind: spring, stiffness_n_per_m: 10 + 5000 * max(sin(time_s), 0)}"), 0.0);
+  EXPECT_EQ(least("{kind: maxwell, stiffness_n_per_m: 5010, viscosity_n_s_per_m: 2 + sin(time_s)}"),
+            0.0);
 }
 
 /// Not certain, for it asks for a position, and that is named.

@@ -316,7 +316,7 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   replaced = true;
 }
 
-Archive WorldState::serialize(Archive archive) {
+Archive WorldState::serialize(Archive archive, bool with_variables) {
   archive.hash(step_count);
   mats.serialize(archive);
   links.serialize(archive);
@@ -325,7 +325,7 @@ Archive WorldState::serialize(Archive archive) {
   maxwell_links.serialize(archive);
   bends.serialize(archive, table);
   log.serialize(archive);
-  if (laws_ask_for_variables) archive.reals(table.variables());
+  if (with_variables) archive.reals(table.variables());
   account.serialize(archive);
   if (archive.hashes()) sets.serialize(archive, table);  // a hash takes the sets first, a row last
   scheme->serialize(archive);
@@ -335,9 +335,9 @@ Archive WorldState::serialize(Archive archive) {
   return archive;
 }
 
-void WorldState::take(std::span<const double> row) {
-  CORDIS_ASSERT(matches(row));
-  serialize(Archive::restoring(row));
+void WorldState::take(std::span<const double> row, bool with_variables) {
+  CORDIS_ASSERT(matches(row, with_variables));
+  serialize(Archive::restoring(row), with_variables);
   if (laws_ask_for_variables) take_parameters();
   scheme->restored(*this);
   if (freezing) freezing->restored(port_inputs);

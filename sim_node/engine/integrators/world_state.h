@@ -42,13 +42,20 @@ struct WorldState {
 
   /// Shows all parts but the network, the state machines and, except to a hash, the step count.
   /// Real time: O(MATs + links + pairs), no allocation, except when it saves. @return the archive
-  Archive serialize(Archive archive);
+  /// @param with_variables  the variables of the network too
+  Archive serialize(Archive archive, bool with_variables);
+  /// Likewise with the variables where a law follows some.
+  Archive serialize(Archive archive) { return serialize(archive, laws_ask_for_variables); }
   /// True if a row is of a state of this world.
+  [[nodiscard]] bool matches(std::span<const double> row, bool with_variables) {
+    return serialize(Archive::checking(row), with_variables).matches();
+  }
   [[nodiscard]] bool matches(std::span<const double> row) {
-    return serialize(Archive::checking(row)).matches();
+    return matches(row, laws_ask_for_variables);
   }
   /// Restores it, with all that depends on it. Precondition: it matches.
-  void take(std::span<const double> row);
+  void take(std::span<const double> row, bool with_variables);
+  void take(std::span<const double> row) { take(row, laws_ask_for_variables); }
   /// Fits all liaisons to the parameters that follow the variables of the table, between two steps.
   void take_parameters() noexcept;
   StateTable make_table(std::vector<StateMachine> state_machines) const;

@@ -53,7 +53,9 @@ BendArray::BendArray(const NetworkDescription& description, const StateTable& ta
     following_of_row_[r] = static_cast<std::uint32_t>(following_.size());
     following_.push_back({bend_of_row_[r], {0.0, rows_[bend_of_row_[r]].shape}});
   }
-  adopt(table);
+  states_.adopt(table);
+  // The variables are not known yet.
+  for (const std::uint32_t bend : bend_of_row_) put_state_at_rest_angle(table, rows_[bend]);
 }
 
 void BendArray::adopt(const StateTable& table) {

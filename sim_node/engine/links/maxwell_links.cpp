@@ -74,6 +74,15 @@ void MaxwellArray::take_parameters(const StateTable& table) noexcept {
   }
 }
 
+/// A start force needs a stiffness: without one the element has no force.
+void MaxwellArray::begin() noexcept {
+  constexpr double kLongest = 1e50;  // elongation of a spring [m]
+  for (const Following& element : following_) {
+    double& tension = tension_[element.row];
+    if (std::abs(tension) > kLongest * element.stiffness) tension = 0.0;
+  }
+}
+
 /// As the kernel has it.
 double MaxwellArray::elongation_increment(std::uint32_t row,
                                           const ForceColumns& columns) const noexcept {

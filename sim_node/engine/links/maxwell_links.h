@@ -30,6 +30,8 @@ class MaxwellArray {
   /// Fits the elements that follow variables to the present parameters of the table: what they were before
   /// counts no longer. Real time: O(such elements), no allocation.
   void take_parameters(const StateTable& table) noexcept;
+  /// Before the first step, once the parameters are known.
+  void begin() noexcept;
   /// Takes them to the parameters of this step, before its forces. Real time: O(such elements), no allocation.
   /// @return energy that these have brought into the springs [J]
   [[nodiscard]] double follow(const StateTable& table, const ForceColumns& columns) noexcept;

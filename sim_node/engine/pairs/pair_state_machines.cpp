@@ -111,26 +111,40 @@ void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
   find_factors(range_square, block);
 }
 
+namespace {
+
+/// Of the last period [m]. MATs at one point have no direction.
+double increment_of(const PairRow& pairs, std::size_t i) noexcept {
+  return pairs.square[i] == 0.0 ? 0.0 : pairs.elongation_increment[i];
+}
+
+}  // namespace
+
 /// Such energy of pairs in one state, a spring without a force limit. Beyond its range a pair has what it has there.
 double PairStateMachines::linear_parameter_energy(const PairStep& step, const PairRest& rest,
                                                   double range, PairBlock& block) const noexcept {
   const StateTerm& term = step.table.terms()[start_];
-  const double more = step.table.stiffness(start_) - step.table.stiffness_before(start_);
-  if (more == 0.0) return 0.0;
-  const auto clamped = [&term](double elongation) {
-    return std::min(term.max_elongation, std::max(term.min_elongation, elongation));
+  const double now = step.table.stiffness(start_);
+  const double before = step.table.stiffness_before(start_);
+  if (now == before) return 0.0;
+  // Where a stiffness is below 0, a contact pushes what is apart.
+  const auto energy = [&term](double stiffness, double elongation, double increment) {
+    const double tension =
+        std::min(term.max_tension, std::max(term.min_tension, stiffness * elongation));
+    return tension * (elongation - increment);
+  };
+  const auto more = [&](double elongation, double increment) {
+    return energy(now, elongation, increment) - energy(before, elongation, increment);
   };
   const PairRows rows = block.rows();
   const PairRow pairs = rows.pairs;
   double sum = 0.0;
   for (std::size_t i = 0; i < rows.count; ++i) {
-    if (pairs.square[i] == 0.0) continue;
     const double rest_length = rest.length(rows.column_a[i] / 4, pairs.column[i] / 4);
-    const double here = clamped(pairs.length[i] - rest_length);
-    const double at_range = clamped(range - rest_length);
-    sum += here * (here - pairs.elongation_increment[i]) - at_range * at_range;
+    sum += more(pairs.length[i] - rest_length, increment_of(pairs, i)) -
+           more(range - rest_length, 0.0);
   }
-  return 0.5 * more * sum;
+  return 0.5 * sum;
 }
 
 void PairStateMachines::add_parameter_energy(const PairStep& step, const PairRest& rest,
@@ -147,13 +161,13 @@ void PairStateMachines::add_parameter_energy(const PairStep& step, const PairRes
   for (std::size_t i = 0; i < rows.count; ++i) {
     const StateIndex state = stateless_ ? start_ : state_[i];
     const bool out_of_reach = state == start_ && !(pairs.square[i] < range * range);
-    if (pairs.square[i] == 0.0 || out_of_reach) continue;
+    if (out_of_reach) continue;
     const std::size_t a = rows.column_a[i] / 4;
     const std::size_t b = pairs.column[i] / 4;
     const EndMasses mass = masses_of(a, b);
     if (step.table.asks_for_variable(state)) {
       parameter_energy_ += step.table.parameter_energy(
-          state, pairs.length[i], block.rest_length()[i], mass, pairs.elongation_increment[i]);
+          state, pairs.length[i], block.rest_length()[i], mass, increment_of(pairs, i));
     }
     if (asks_at_range)
       parameter_energy_ -= step.table.parameter_energy(start_, range, rest.length(a, b), mass, 0.0);

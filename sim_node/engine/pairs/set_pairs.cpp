@@ -63,7 +63,7 @@ std::size_t state_capacity(const SetLiaison& set) {
   return std::min(all_pairs(set), kStatesPerMember * (set.set_p.size() + set.set_q.size()));
 }
 
-double dot(const double* u, const double* v) noexcept {
+double product_of(const double* u, const double* v) noexcept {
   return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
@@ -519,7 +519,7 @@ std::size_t SetPairs::gather_within(double range, std::size_t a, const std::uint
   plane.range = range;
   std::copy_n(shape.axis.data(), 3, plane.normal);
   std::copy_n(surfaces_.centre(a).data(), 3, plane.centre);
-  plane.moved = dot(plane.normal, moved_.data() + 4 * a);
+  plane.moved = product_of(plane.normal, moved_.data() + 4 * a);
   return kernel_.gather_plane(members(), plane, neighbour, count, row);
 }
 
@@ -622,8 +622,8 @@ void SetPairs::step_block(const PairStep& step, const MemberColumns& members,
 inline void SetPairs::add_work(std::size_t member, MemberWorks& sum) const noexcept {
   const std::size_t place = member % 4;
   const double* moved = moved_.data() + 4 * member;
-  sum.all[place] += dot(force_.data() + 4 * member, moved);
-  if (has_viscous_) sum.viscous[place] += dot(viscous_.data() + 4 * member, moved);
+  sum.all[place] += product_of(force_.data() + 4 * member, moved);
+  if (has_viscous_) sum.viscous[place] += product_of(viscous_.data() + 4 * member, moved);
 }
 
 inline void SetPairs::take_position(std::size_t m, const ForceColumns& columns) noexcept {
@@ -642,9 +642,9 @@ inline void SetPairs::give_force(std::size_t m, const ForceColumns& columns) con
 
 /// Half of what the force on a member takes over a way.
 inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
-  const double all = -0.5 * dot(force_.data() + 4 * member, moved);
+  const double all = -0.5 * product_of(force_.data() + 4 * member, moved);
   if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
-  const double dissipated = -0.5 * dot(viscous_.data() + 4 * member, moved);
+  const double dissipated = -0.5 * product_of(viscous_.data() + 4 * member, moved);
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 

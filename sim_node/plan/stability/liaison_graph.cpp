@@ -107,6 +107,14 @@ std::uint32_t state_machine_of(const NetworkDescription& network, LiaisonId liai
   }
 }
 
+/// True if a law of it does.
+bool follows_variables(const NetworkDescription& network, LiaisonId liaison) {
+  if (liaison.kind == LiaisonKind::kLink) return false;
+  const std::uint32_t machine = state_machine_of(network, liaison);
+  return machine < network.state_machines.size() &&
+         laws_ask_for_variable(network.state_machines[machine]);
+}
+
 std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network, LiaisonId liaison,
                                                const Reach& reach) {
   return unbounded_variables(network.state_machines[state_machine_of(network, liaison)],
@@ -534,6 +542,9 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
   double stored = 0.0;
   for (index = 0; index < network.sets.size(); ++index)
     stored += add_set(network, index, reach, graph);
+  for (Edge& edge : graph.edges) edge.follows = follows_variables(network, edge.liaison);
+  for (ContactBound& contact : graph.contacts)
+    contact.follows = follows_variables(network, {LiaisonKind::kSet, contact.set});
   graph.turning = turning_with_sets(network, reach, stored);
   add_forces(network, graph);
   if (reach.endless && !graph.bounded && !graph.uncertainty) {

@@ -168,13 +168,13 @@ std::vector<PortLoad> port_loads(const LiaisonGraph& graph, LoadBound bound) {
   };
   for (const Edge& edge : graph.edges) {
     // The edges of a bend are a bound from above.
-    const bool changes = edge.liaison.kind == LiaisonKind::kMaxwellLink && edge.variation > 0.0;
-    if (least && (!edge.bounded || edge.liaison.kind == LiaisonKind::kBend || changes)) continue;
+    if (least && (!edge.bounded || edge.liaison.kind == LiaisonKind::kBend || edge.follows))
+      continue;
     add(edge.mat_a, 1.0, edge.stiffness, edge.viscosity);
     if (edge.mat_b != edge.mat_a) add(edge.mat_b, 1.0, edge.stiffness, edge.viscosity);
   }
   for (const ContactBound& contact : graph.contacts) {
-    if (least && !contact.bounded) continue;
+    if (least && (!contact.bounded || contact.follows)) continue;
     for (std::size_t i = 0; i < contact.members.size(); ++i) {
       const double count = least ? std::min(1.0, contact.neighbours[i]) : contact.neighbours[i];
       add(contact.members[i], count, contact.stiffness, contact.viscosity);
