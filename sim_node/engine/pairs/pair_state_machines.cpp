@@ -113,7 +113,7 @@ void PairStateMachines::step(const PairStep& step, const MemberColumns& members,
 
 namespace {
 
-/// Of the last period [m]. MATs at one point have no direction.
+/// How much longer a pair has become in the last period [m]; 0 for MATs at one point, which have no direction.
 double increment_of(const PairRow& pairs, std::size_t i) noexcept {
   return pairs.square[i] == 0.0 ? 0.0 : pairs.elongation_increment[i];
 }

@@ -105,7 +105,7 @@ LinearBounds linear_bounds(const engine::NetworkDescription& network,
 }
 
 double max_stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point,
-                      const Reach& reach) {
+                     const Reach& reach) {
   const engine::LinkState& state = state_machine.states[state_machine.start];
   if (!engine::asks_for_variable(state.elasticity)) return stored_in(state_machine, point);
   const Interval tension =
