@@ -45,7 +45,7 @@ std::uint32_t from_environment(const char* name, std::uint32_t otherwise) {
 }
 
 const std::uint32_t kFirst = test_seed();
-const std::uint32_t kCount = from_environment("CORDIS_RANDOM_SCENES", rounds(1200));
+const std::uint32_t kCount = from_environment("CORDIS_RANDOM_SCENES", rounds(2000));
 
 /// Seeds that failed once, besides those of the environment or the usual ones.
 std::vector<std::uint32_t> seeds() {
