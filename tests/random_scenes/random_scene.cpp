@@ -39,7 +39,8 @@ class SceneWriter {
         random_of_still_matter_(seed ^ 0x9e3779b9U),
         random_of_hollows_(seed ^ 0x94d049bbU),
         random_of_rest_(seed ^ 0xbf58476dU),
-        random_of_formulas_(seed ^ 0xff51afd7U) {
+        random_of_formulas_(seed ^ 0xff51afd7U),
+        random_of_places_(seed ^ 0x2127599bU) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -51,6 +52,7 @@ class SceneWriter {
     write_head();
     write_masses();
     if (matter_ != Matter::kPotentials) drive_some();
+    if (matter_ == Matter::kAnything) perhaps_push_by_place();
     if (matter_ == Matter::kAnything) perhaps_in_a_medium();
     write_port();
     perhaps_hold_the_body();
@@ -222,6 +224,52 @@ step: {{rate_hz: {}, integrator: {}{}}}
     } else if (choice < 0.25) {
       masses_.insert(masses_.size() - 2, ", driven: {force_n: " + function_of_time(0.05) + "}");
     }
+  }
+
+  double place_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_places_()) / 4294967296.0;
+  }
+
+  /// Along an axis, of a well, a centre, a whirl, waves, a drag or a motor that follows a signal.
+  std::string force_by_place(std::uint32_t kind, int axis, double size) const {
+    const char name = "xyz"[axis];
+    const std::string square = space_ == 1   ? "x_m^2"
+                               : space_ == 2 ? "x_m^2 + y_m^2"
+                                             : "x_m^2 + y_m^2 + z_m^2";
+    switch (kind) {
+      case 0:
+        return fmt::format("-{:.4g} * {}_m", 30.0 * size, name);
+      case 1:
+        return fmt::format("-{0:.4g} * {1}_m - {2:.4g} * velocity_{1}_m_per_s", 30.0 * size, name,
+                           0.1 * size);
+      case 2:
+        return fmt::format("-{:.4g} * {}_m / ({} + 0.01)^1.5", 0.01 * size, name, square);
+      case 3:
+        return axis > 1 ? "0"
+                        : fmt::format("{}{:.4g} * {}_m", axis == 0 ? "" : "-", size,
+                                      space_ == 1 ? 'x' : "yx"[axis]);
+      case 4:
+        return fmt::format("{:.4g} * sin(40 * {}_m)", 0.1 * size, name);
+      case 5:
+        return fmt::format("-{:.4g} * {}_m^3", 1000.0 * size, name);
+      case 6:
+        return fmt::format("-{0:.4g} * velocity_{1}_m_per_s * abs(velocity_{1}_m_per_s)",
+                           0.1 * size, name);
+      default:
+        return axis == 0 ? fmt::format("{:.4g} * (middle - x_m)", 10.0 * size) : "0";
+    }
+  }
+
+  /// A tenth of the matter is pushed by where it is, or how fast.
+  void perhaps_push_by_place() {
+    const double choice = place_between(0.0, 1.0);
+    const std::uint32_t kind = random_of_places_() % 8;
+    const double size = 0.01 * std::pow(100.0, place_between(0.0, 1.0));
+    if (choice > 0.1 || masses_.find("force_n", masses_.find("  p: ")) != std::string::npos) return;
+    std::string forces;
+    for (int axis = 0; axis < space_; ++axis)
+      forces += (axis > 0 ? ", \"" : "\"") + force_by_place(kind, axis, size) + "\"";
+    masses_.insert(masses_.size() - 2, ", driven: {force_n: [" + forces + "]}");
   }
 
   double medium_between(double low, double high) {
@@ -1278,8 +1326,8 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_parameters_;    // likewise
   std::mt19937 random_of_still_matter_;  // likewise
   std::mt19937 random_of_hollows_;       // likewise
-  std::mt19937 random_of_rest_;          // likewise
   std::mt19937 random_of_formulas_;      // likewise
+  std::mt19937 random_of_places_;        // likewise
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses

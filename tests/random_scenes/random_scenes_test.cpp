@@ -596,6 +596,7 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
   network.freeze_tolerance = 0.0;
   if (network.integrator == engine::IntegratorKind::kModal) return std::nullopt;
   for (engine::MaxwellLink& link : network.maxwell_links) link.start_force = 0.0;
+  network.drives.clear();
   for (int round = 0; round < 8; ++round) {
     const double step = times * plan::StartTangent(network).diverging_step();
     constexpr double kLongest = 10.0;  // [s]
@@ -606,7 +607,6 @@ std::optional<NetworkDescription> diverging_at(const scene::Scene& scene, double
   if (network.step < 0.99 * times * plan::StartTangent(network).diverging_step())
     return std::nullopt;
   for (engine::Mat& mat : network.mats) mat.velocity.setZero();
-  network.drives.clear();
   for (const engine::Surface& surface : network.surfaces)
     network.mats[surface.mat].kind = MatKind::kFixed;
   std::vector<engine::StateMachine> alone;
