@@ -1326,6 +1326,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_parameters_;    // likewise
   std::mt19937 random_of_still_matter_;  // likewise
   std::mt19937 random_of_hollows_;       // likewise
+  std::mt19937 random_of_rest_;          // likewise
   std::mt19937 random_of_formulas_;      // likewise
   std::mt19937 random_of_places_;        // likewise
   bool freezes_ = false;
