@@ -99,7 +99,7 @@ struct ModalLoad {
 double surely_as_stiff(const engine::NetworkDescription& network, const Edge& edge) {
   if (edge.follows) return 0.0;
   if (edge.liaison.kind != LiaisonKind::kStateLink) {
-    return edge.stiffness - edge.variation + 2.0 * edge.viscosity / network.step;
+    return edge.stiffness + 2.0 * edge.viscosity / network.step;
   }
   const engine::StateLink& link = network.state_links[edge.liaison.index];
   const Tangent tangent =

@@ -120,6 +120,7 @@ struct StateTable::Elastic {
   bool has_law;       // beside that stiffness
   double well_depth;  // of Lennard-Jones [J]
 
+  std::optional<LennardJones> balls() const noexcept;
   double tension_of_law(const LawPoint& link) const noexcept;
   double potential_of_law(const LawPoint& link) const noexcept;
   double whole_tension(const LawPoint& link) const noexcept;
@@ -473,20 +474,23 @@ double StateTable::stored_energy(StateIndex index, double distance, double rest_
       .energy({distance, distance - rest_length, 0.0, mass.a, mass.b, content_->variables.data()});
 }
 
+/// Lennard-Jones as it is now, with its depth; nothing where the law is another.
+std::optional<LennardJones> StateTable::Elastic::balls() const noexcept {
+  const auto* law = std::get_if<LennardJones>(&state.elasticity);
+  if (law == nullptr) return std::nullopt;
+  LennardJones balls = *law;
+  balls.well_depth = well_depth;
+  return balls;
+}
+
 double StateTable::Elastic::tension_of_law(const LawPoint& link) const noexcept {
-  const auto* balls = std::get_if<LennardJones>(&state.elasticity);
-  if (balls == nullptr) return elastic_tension(state.elasticity, link);
-  LennardJones deep = *balls;
-  deep.well_depth = well_depth;
-  return scalar_tension(deep, link, link.elongation);
+  if (const auto law = balls()) return scalar_tension(*law, link, link.elongation);
+  return elastic_tension(state.elasticity, link);
 }
 
 double StateTable::Elastic::potential_of_law(const LawPoint& link) const noexcept {
-  const auto* balls = std::get_if<LennardJones>(&state.elasticity);
-  if (balls == nullptr) return potential(state.elasticity, link);
-  LennardJones deep = *balls;
-  deep.well_depth = well_depth;
-  return deep.potential(link.distance, link.elongation);
+  if (const auto law = balls()) return law->potential(link.distance, link.elongation);
+  return potential(state.elasticity, link);
 }
 
 double StateTable::Elastic::energy(const LawPoint& link) const noexcept {
@@ -531,15 +535,12 @@ double StateTable::parameter_energy(StateIndex index, double distance, double re
 
 /// Energy of a state whose tension has limits: the integral of the limited elastic tension [J].
 double StateTable::Elastic::limited_energy(const LawPoint& link) const noexcept {
-  const auto* balls = std::get_if<LennardJones>(&state.elasticity);
   const bool is_limited = std::isfinite(state.force_limit);
   // A distance below 0, in 1 dimension, has a tension of the other sign.
   const bool pulls = link.distance < 0.0 ? term.min_tension < 0.0 : term.max_tension > 0.0;
-  if (balls != nullptr && stiffness == 0.0 && term.one_sided && !is_limited &&
-      (state.pulls || state.pushes)) {
-    LennardJones deep = *balls;
-    deep.well_depth = well_depth;
-    return energy_of_half(deep, pulls, link.distance);
+  if (const auto law = balls();
+      law && stiffness == 0.0 && term.one_sided && !is_limited && (state.pulls || state.pushes)) {
+    return energy_of_half(*law, pulls, link.distance);
   }
   const double rest_length = link.distance - link.elongation;
   const auto point_at = [&](double distance) {
