@@ -4,7 +4,9 @@ target_compile_features(cordis_options INTERFACE cxx_std_20)
 target_include_directories(cordis_options INTERFACE ${PROJECT_SOURCE_DIR})
 # No contraction and no fast-math: a recording must replay bit for bit on every machine.
 target_compile_options(cordis_options INTERFACE
-  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion)
+  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  # std::stable_sort of the library of g++ 12; names of another source that is compiled at once, which g++ does not count.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-deprecated-declarations$<SEMICOLON>-Wno-shadow>)
 
 # What is not the engine compiles in a fifth less time than with -O3, and waits for others anyway.
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
@@ -40,9 +42,8 @@ endif()
 if(CORDIS_SANITIZE)
   target_compile_options(cordis_options INTERFACE
     -fsanitize=${CORDIS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # What ends the program anyway, or what the address sanitizer finds, takes a quarter of the time of a compiler.
-    $<$<CXX_COMPILER_ID:GNU>:-fno-sanitize=null,object-size,vptr,nonnull-attribute,returns-nonnull-attribute>
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # g++ 12 has false alarms about the standard library
+    # What ends the program anyway, or what the address sanitizer finds, takes half of the time of a compiler.
+    -fno-sanitize=null,object-size,vptr,pointer-overflow,nonnull-attribute,returns-nonnull-attribute)
   target_link_options(cordis_options INTERFACE -fsanitize=${CORDIS_SANITIZE})
 endif()
 

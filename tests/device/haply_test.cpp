@@ -168,7 +168,7 @@ TEST_F(HaplyTest, RefusesAnglesThatNoPenHas) {
   board.degrees[0] = std::nanf("");
   ASSERT_TRUE(until(*pen, {}, [&](bool) { return hardware.bad_count() > 0; }));
   AxisValues sensed{};
-  pen->read(sensed);
+  ASSERT_TRUE(pen->read(sensed));
   EXPECT_NEAR(sensed[0], 0.0, 1e-6) << "the last good place";
 }
 

@@ -80,12 +80,12 @@ TEST(Script, IsNotMovedByWhatItIsAnswered) {
   AxisValues force{};
 
   for (int n = 0; n < 1000; ++n) {
-    one->read(from_one);
-    other->read(from_other);
+    ASSERT_TRUE(one->read(from_one));
+    ASSERT_TRUE(other->read(from_other));
     ASSERT_EQ(from_one, from_other);
     force.fill(n);
-    one->write(force);
-    other->write({});
+    ASSERT_TRUE(one->write(force));
+    ASSERT_TRUE(other->write({}));
   }
 }
 
@@ -95,7 +95,7 @@ TEST(Script, GivesForcesInRoleLiaison) {
   AxisValues sensed;
 
   script->start(Role::kLiaison);
-  script->read(sensed);
+  ASSERT_TRUE(script->read(sensed));
 
   EXPECT_EQ(sensed[0], -2.5);
   EXPECT_EQ(sensed[1], -2.5);
@@ -105,12 +105,12 @@ TEST(Script, BeginsAnewWhenStarted) {
   config::Problems problems;
   const auto script = script_of(kScript, two_keys(), problems);
   AxisValues sensed;
-  for (int n = 0; n < 300; ++n) script->write({});
-  script->read(sensed);
+  for (int n = 0; n < 300; ++n) ASSERT_TRUE(script->write({}));
+  ASSERT_TRUE(script->read(sensed));
   ASSERT_EQ(sensed[0], -0.03);
 
   script->start(Role::kMass);
-  script->read(sensed);
+  ASSERT_TRUE(script->read(sensed));
 
   EXPECT_EQ(sensed[0], 0.0);
 }

@@ -46,7 +46,7 @@ class Fingerprint {
   template <class Type>
   requires requires { Type::kName; }
   void add(const Type& item) {
-    Type::visit_fields(item, [this](const LawField& /*field*/, double value) { add(value); });
+    Type::visit_fields(item, [&](const LawField& /*field*/, double value) { add(value); });
   }
   void add(const Law& law) {
     add(static_cast<std::uint64_t>(law.index()));
@@ -194,7 +194,7 @@ class Fingerprint {
     if (held == nullptr && kType >= kFirstWithoutTrace) return;
     const Type absent{};
     Type::visit_fields(held != nullptr ? *held : absent,
-                       [this](const LawField& /*field*/, const auto& value) {
+                       [&](const LawField& /*field*/, const auto& value) {
                          constexpr bool kIsNumber = std::is_convertible_v<decltype(value), double>;
                          if constexpr (kIsNumber != std::is_same_v<Kind, Numbers>) return;
                          if constexpr (kIsNumber) add(value);
