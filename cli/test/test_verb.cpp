@@ -31,7 +31,8 @@ int hand_over_to_ctest(const std::vector<std::string>& ctest_options) {
       directory,
       "--output-on-failure",
       "--no-tests=error",
-      "-j" + std::to_string(std::thread::hardware_concurrency() + 1)};  // tests of processes wait more than they compute
+      "-j" + std::to_string(std::thread::hardware_concurrency() +
+                            1)};  // tests of processes wait more than they compute
   words.insert(words.end(), ctest_options.begin(), ctest_options.end());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/partner_limit.h"
 #include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/stretch.h"
@@ -219,21 +220,82 @@ Motion motion_of(const engine::World& world, const std::vector<std::uint32_t>& m
   return motion;
 }
 
-}  // namespace
+/// The needed partners times this power of what they are certified to grow by.
+std::vector<SetPartners> partners_of(const std::vector<PartnerLimit>& certified,
+                                     const LiaisonGraph& needed, double share) {
+  constexpr double kRounding = 1e-9;
+  std::vector<SetPartners> all;
+  for (const PartnerLimit& limit : certified) {
+    all.push_back({limit.set, {}});
+    for (const ContactBound& contact : needed.contacts) {
+      if (contact.set != limit.set || !contact.counted) continue;
+      for (const double partners : contact.neighbours) {
+        const double most = limit.certified[all.back().partners.size()];
+        const double here =
+            partners > 0.0 && most > partners ? partners * std::pow(most / partners, share) : most;
+        all.back().partners.push_back(static_cast<std::uint32_t>(std::min(here + kRounding, most)));
+      }
+    }
+  }
+  return all;
+}
 
-ReachLimit reach_limit(const NetworkDescription& network) {
+/// The graph with at least these partners.
+LiaisonGraph with_partners(LiaisonGraph graph, const std::vector<SetPartners>& all) {
+  for (const SetPartners& set : all) {
+    std::size_t member = 0;
+    for (ContactBound& contact : graph.contacts) {
+      if (contact.set != set.set || !contact.counted) continue;
+      for (double& partners : contact.neighbours)
+        partners = std::max<double>(partners, set.partners[member++]);
+    }
+  }
+  return graph;
+}
+
+/// The limits of a graph with these partners, its energies raised as far as its step is certified.
+/// @param start  a graph with the energies of the start, which is certified with them
+ReachLimit limit_with(const NetworkDescription& network, const LiaisonGraph& start,
+                      std::vector<SetPartners> partners) {
   constexpr double kFinest = 1.1;
-  LiaisonGraph graph = liaison_graph(network);
-  if (graph.bounded) return {};
-  if (!is_certified(network, graph)) return {};
+  LiaisonGraph graph = with_partners(start, partners);
   const auto holds = [&](double factor) {
-    LiaisonGraph wider = liaison_graph(network, factor);
+    LiaisonGraph wider = with_partners(liaison_graph(network, factor), partners);
     if (!is_certified(network, wider)) return false;
     graph = std::move(wider);
     return true;
   };
   largest_factor(holds, kFinest);
-  return limit_of(network, graph);
+  ReachLimit limit = limit_of(network, graph);
+  limit.partners = std::move(partners);
+  return limit;
+}
+
+/// True if no member of a set touches more others than these limits have.
+bool has_room(const ReachLimit& limit, const engine::World& world) noexcept {
+  return std::ranges::all_of(limit.partners, [&](const SetPartners& set) {
+    for (std::size_t member = 0; member < set.partners.size(); ++member) {
+      if (world.partners_of(set.set, member) > set.partners[member]) return false;
+    }
+    return true;
+  });
+}
+
+}  // namespace
+
+ReachLimit reach_limit(const NetworkDescription& network) {
+  const LiaisonGraph start = liaison_graph(network);
+  if (start.bounded || !is_certified(network, start)) return {};
+  ReachLimit limit = limit_with(network, start, {});
+  if (limit.is_infinite()) return limit;
+  const std::vector<PartnerLimit> certified = partner_limits(network, start, /*holds=*/true);
+  limit.partners = partners_of(certified, start, 0.0);
+  for (const double share : {0.5, 1.0}) {
+    std::vector<SetPartners> partners = partners_of(certified, start, share);
+    if (partners == limit.partners) continue;
+    limit.with_more_partners.push_back(limit_with(network, start, std::move(partners)));
+  }
+  return limit;
 }
 
 double pair_energy(const engine::World& world, const engine::SetLiaison& set) noexcept {
@@ -247,17 +309,22 @@ double pair_energy(const engine::World& world, const engine::SetLiaison& set) no
   return std::min(kinetic, 0.5 * reduced_mass * speed * speed);
 }
 
-bool is_beyond(const ReachLimit& limit, const engine::World& world,
+bool is_beyond(const ReachLimit& of_scene, const engine::World& world,
                const engine::Energy& energy) noexcept {
-  if (limit.is_infinite()) return false;
+  if (of_scene.is_infinite()) return false;
+  const ReachLimit* limit = &of_scene;
+  for (const ReachLimit& fuller : of_scene.with_more_partners) {
+    if (has_room(*limit, world)) break;
+    limit = &fuller;
+  }
   const engine::NetworkDescription& network = world.network().description();
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     if (network.mats[i].kind != engine::MatKind::kPort) continue;
-    if (!(world.velocity(i).norm() <= limit.speed)) return true;
+    if (!(world.velocity(i).norm() <= limit->speed)) return true;
   }
   const double whole = energy.kinetic + std::max(energy.elastic, 0.0);
-  if (!(whole <= limit.energy)) return true;
-  return std::ranges::any_of(limit.pairs, [&](const PairLimit& pair) {
+  if (!(whole <= limit->energy)) return true;
+  return std::ranges::any_of(limit->pairs, [&](const PairLimit& pair) {
     return !(pair_energy(world, network.sets[pair.set]) <= pair.energy);
   });
 }

@@ -38,20 +38,20 @@ TEST(ReachLimit, IsPassedByEnergyAndSpeed) {
   const World world = in_flight();
   const engine::Energy energy = world.energy();
   ASSERT_NEAR(energy.kinetic, 14.0, 1e-9);
-  EXPECT_FALSE(is_beyond({.energy = 14.1, .pairs = {}}, world, energy));
-  EXPECT_TRUE(is_beyond({.energy = 13.9, .pairs = {}}, world, energy));
-  EXPECT_FALSE(is_beyond({.speed = 1.01, .energy = 20.0, .pairs = {}}, world, energy));
-  EXPECT_TRUE(is_beyond({.speed = 0.99, .energy = 20.0, .pairs = {}}, world, energy)) << "the port";
+  EXPECT_FALSE(is_beyond({.energy = 14.1}, world, energy));
+  EXPECT_TRUE(is_beyond({.energy = 13.9}, world, energy));
+  EXPECT_FALSE(is_beyond({.speed = 1.01, .energy = 20.0}, world, energy));
+  EXPECT_TRUE(is_beyond({.speed = 0.99, .energy = 20.0}, world, energy)) << "the port";
 }
 
 TEST(ReachLimit, CountsStoredEnergyForTheWholeSceneAndNoneBelowNothing) {
   const World world = in_flight();
   engine::Energy energy = world.energy();
   energy.elastic = 5.0;
-  EXPECT_TRUE(is_beyond({.energy = 18.9, .pairs = {}}, world, energy));
-  EXPECT_FALSE(is_beyond({.energy = 19.1, .pairs = {}}, world, energy));
+  EXPECT_TRUE(is_beyond({.energy = 18.9}, world, energy));
+  EXPECT_FALSE(is_beyond({.energy = 19.1}, world, energy));
   energy.elastic = -5.0;
-  EXPECT_TRUE(is_beyond({.energy = 13.9, .pairs = {}}, world, energy)) << "14 J of motion";
+  EXPECT_TRUE(is_beyond({.energy = 13.9}, world, energy)) << "14 J of motion";
 }
 
 TEST(ReachLimit, IsNeverPassedWhereThereIsNone) {
@@ -60,8 +60,7 @@ TEST(ReachLimit, IsNeverPassedWhereThereIsNone) {
   energy.kinetic = 1e300;
   EXPECT_TRUE(ReachLimit{}.is_infinite());
   EXPECT_FALSE(is_beyond(ReachLimit{}, world, energy));
-  EXPECT_FALSE(is_beyond({.speed = 0.1, .pairs = {}}, world, energy))
-      << "a speed alone certifies nothing";
+  EXPECT_FALSE(is_beyond({.speed = 0.1}, world, energy)) << "a speed alone certifies nothing";
 }
 
 constexpr double kDepth = 0.01;  // [J]
@@ -180,6 +179,62 @@ TEST(ReachLimit, OfOneSetIsNotThatOfAnother) {
   ASSERT_EQ(limit.pairs.size(), 2u);
   EXPECT_GT(limit.pairs[0].energy, 100.0 * kDepth);
   EXPECT_LT(limit.pairs[1].energy, 4.0 * kDepth);
+}
+
+/// A ball of 0.1 kg and twelve around it at this distance, which touch it alone.
+NetworkDescription ball_among_others(double distance, double speed) {
+  NetworkDescription scene = balls_at_rest();
+  scene.mats.resize(1);
+  scene.mats[0].velocity = Vec3(speed, 0, 0);
+  scene.sets[0].set_p = {0};
+  for (std::uint32_t i = 1; i <= 12; ++i) {
+    const double angle = i * std::acos(-1.0) / 6.0;
+    scene.sets[0].set_q.push_back(i);
+    scene.mats.push_back(mass(0.1, distance * Vec3(std::cos(angle), std::sin(angle), 0)));
+  }
+  return scene;
+}
+
+constexpr double kAway = 5.0;
+constexpr double kInTheWell = 0.11225;
+
+/// The limits of the balls that are away, at a step for which six partners may have more energy.
+ReachLimit limit_of_balls_away(NetworkDescription& scene) {
+  scene = ball_among_others(kAway, 0.0);
+  scene.step = 0.4 * plan::certified_bound(scene, plan::liaison_graph(scene)).step;
+  return plan::reach_limit(scene);
+}
+
+/// More partners leave less for the slope of a pair.
+TEST(ReachLimit, IsLowerWithMorePartners) {
+  NetworkDescription scene;
+  const ReachLimit limit = limit_of_balls_away(scene);
+  ASSERT_EQ(limit.partners.at(0).partners.at(0), 6u) << "equal discs around one";
+  ASSERT_FALSE(limit.with_more_partners.empty());
+  EXPECT_EQ(limit.with_more_partners.back().partners.at(0).partners.at(0), 12u)
+      << "there are no more";
+  const ReachLimit* before = &limit;
+  for (const ReachLimit& fuller : limit.with_more_partners) {
+    EXPECT_GT(fuller.partners.at(0).partners.at(0), before->partners.at(0).partners.at(0));
+    EXPECT_LT(fuller.pairs.at(0).energy, before->pairs.at(0).energy);
+    before = &fuller;
+  }
+}
+
+TEST(ReachLimit, WithMorePartnersIsPassedByWhatFewerAllow) {
+  NetworkDescription scene;
+  const ReachLimit limit = limit_of_balls_away(scene);
+  ASSERT_FALSE(limit.with_more_partners.empty());
+  const double between =
+      0.5 * (limit.pairs.at(0).energy + limit.with_more_partners.back().pairs.at(0).energy);
+  const double fast = std::sqrt(2.0 * between / 0.05);  // of two equal balls against each other
+  const auto is_passed = [&](double distance, double speed) {
+    const World world = make_world(ball_among_others(distance, speed));
+    return is_beyond(limit, world, world.energy());
+  };
+  EXPECT_TRUE(is_passed(kInTheWell, fast));
+  EXPECT_FALSE(is_passed(kAway, fast)) << "nothing touches it";
+  EXPECT_FALSE(is_passed(kInTheWell, 0.0)) << "it rests";
 }
 
 /// Balls of 2 kg at 3, 2 and 1 m/s, and one of 0.02 kg.

@@ -41,8 +41,10 @@ TEST(Palette, ShowsColoursOfScenesAsThePageDoes) {
   ASSERT_FALSE(table["shown"].empty());
   for (const nlohmann::json& row : table["shown"]) {
     const Colour wanted = colour_of(row["wanted"]);
-    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kDark))), row["dark"].get<std::string>()) << row;
-    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kLight))), row["light"].get<std::string>()) << row;
+    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kDark))), row["dark"].get<std::string>())
+        << row;
+    EXPECT_EQ(hex_of(readable(wanted, palette_of(Theme::kLight))), row["light"].get<std::string>())
+        << row;
   }
 }
 

@@ -56,7 +56,8 @@ class WallOnBoundary {
         before_(device, delay_.part * loop.period),
         after_(device, (1.0 - delay_.part) * loop.period) {}
 
-  Complex operator()(Complex z) const {
+  Complex operator()(double theta) const {
+    const Complex z = std::polar(1.0, theta);
     const Complex late = 1.0 / z;
     const Complex way = after_.way_of_force + late * (before_.way_of_force +
                                                       after_.way_of_speed * before_.speed_of_force);
@@ -64,7 +65,7 @@ class WallOnBoundary {
         after_.speed_of_force + late * after_.speed_of_speed * before_.speed_of_force;
     const Complex mass =
         (way + all_.way_of_speed * speed / (z - 1.0 + all_.lost_speed)) / (z - 1.0);
-    return delay_.whole == 0.0 ? -1.0 / mass : -std::pow(z, delay_.whole) / mass;
+    return -std::polar(1.0, delay_.whole * theta) / mass;
   }
 
  private:
@@ -73,6 +74,11 @@ class WallOnBoundary {
   HeldMotion before_;
   HeldMotion after_;
 };
+
+/// 1 - 1/z
+Complex change_at(double theta) {
+  return 1.0 - std::polar(1.0, -theta);
+}
 
 /// What a wall K + B (1 - 1/z) / T gives at the frequency w / T: R = gain K - taken B, the same
 /// condition for both ends of the part of a period weighted by it.
@@ -129,15 +135,15 @@ class PassiveLoop {
   double spread_;  // s (1 - s)
 };
 
-/// The least positive real value that `curve` takes on the upper half of the unit circle.
+/// The least positive real value that `curve` takes over the angles of the upper half of the unit circle.
 template <class Curve>
 double min_real_value(const Curve& curve) {
   double least = std::numeric_limits<double>::infinity();
   double theta_before = 1e-4;
-  Complex before = curve(std::polar(1.0, theta_before));
+  Complex before = curve(theta_before);
   for (int n = 1; n <= kFrequencies; ++n) {
     const double theta = std::numbers::pi * n / kFrequencies;
-    const Complex now = curve(std::polar(1.0, theta));
+    const Complex now = curve(theta);
     if (n == kFrequencies && now.real() > 0.0)
       least = std::min(least, now.real());  // z = -1 is real
     if (now.imag() * before.imag() < 0.0) {
@@ -145,10 +151,10 @@ double min_real_value(const Curve& curve) {
       double high = theta;
       for (int i = 0; i < kBisections; ++i) {
         const double middle = 0.5 * (low + high);
-        const bool same = curve(std::polar(1.0, middle)).imag() * before.imag() > 0.0;
+        const bool same = curve(middle).imag() * before.imag() > 0.0;
         (same ? low : high) = middle;
       }
-      const double value = curve(std::polar(1.0, low)).real();
+      const double value = curve(low).real();
       if (value > 0.0) least = std::min(least, value);
     }
     before = now;
@@ -219,7 +225,7 @@ double largest_port_stiffness(double device_viscosity, double port_viscosity,
 
 double stable_port_viscosity(const PortDevice& device, const PortLoop& loop) {
   const WallOnBoundary wall(device, loop);
-  return min_real_value([&](Complex z) { return loop.period * wall(z) / (1.0 - 1.0 / z); });
+  return min_real_value([&](double theta) { return loop.period * wall(theta) / change_at(theta); });
 }
 
 double stable_port_stiffness(const PortDevice& device, double port_viscosity,
@@ -227,7 +233,7 @@ double stable_port_stiffness(const PortDevice& device, double port_viscosity,
   if (port_viscosity >= stable_port_viscosity(device, loop)) return 0.0;
   const WallOnBoundary wall(device, loop);
   return min_real_value(
-      [&](Complex z) { return wall(z) - port_viscosity * (1.0 - 1.0 / z) / loop.period; });
+      [&](double theta) { return wall(theta) - port_viscosity * change_at(theta) / loop.period; });
 }
 
 double largest_hand_stiffness(const PortLoad& load, double mass, const PortLoop& loop) {
