@@ -53,9 +53,6 @@ ChildProcess& start_watched(LiveSession& session, const std::string& program,
 }
 
 TEST(Locks, AreNeverSharedByTheForceLoopAndAThreadOfNormalPriority) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "skipped: a sanitizer stands where the watch would";
-#endif
   if (!may_have_realtime_priority()) GTEST_SKIP() << "skipped: no realtime priority here";
   LiveSession session("realtime", kSimAndKey);
   session.add_file("scene.yaml", wall_scene(200.0));

@@ -64,8 +64,8 @@ std::vector<double> waits_of(std::size_t device, const std::vector<Coming>& comi
   std::vector<double> waits;
   for (const Coming& sample : coming) {
     if (sample.device != device || sample.number < from) continue;
-    const auto played = std::ranges::find_if(
-        ticks, [&](const Tick& tick) { return tick.newest[device] >= sample.number; });
+    const auto played = std::ranges::lower_bound(
+        ticks, sample.number, {}, [&](const Tick& tick) { return tick.newest[device]; });
     if (played == ticks.end()) continue;
     waits.push_back(static_cast<double>(played->at_nsec - sample.at_nsec) / kScenePeriod);
   }

@@ -1,12 +1,12 @@
-// tests/support/rounds.h -- how much of a long test is done under sanitizers.
+// tests/support/rounds.h -- how much of a long test is done where each step takes long.
 #pragma once
 
 namespace cordis::test {
 
-/// How many of so many rounds a test does: all of them, but one in ten where a sanitizer watches
-/// every access, which it does in the first rounds as well as in the last.
+/// How many of so many rounds a test does: all of them, but one in ten in debug builds and under sanitizers, which
+/// check the first rounds as well as the last.
 constexpr int rounds(int all) noexcept {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef CORDIS_ASSERTIONS
   return (all + 9) / 10;
 #else
   return all;
