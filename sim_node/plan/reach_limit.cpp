@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <utility>
 #include <variant>
 
@@ -220,53 +221,75 @@ Motion motion_of(const engine::World& world, const std::vector<std::uint32_t>& m
   return motion;
 }
 
-/// The needed partners times this power of what they are certified to grow by.
-std::vector<SetPartners> partners_of(const std::vector<PartnerLimit>& certified,
+constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
+
+/// The needed partners times this power of what they are certified to grow by; any number for what is no mass.
+std::vector<SetPartners> partners_of(const NetworkDescription& network,
+                                     const std::vector<PartnerLimit>& certified,
                                      const LiaisonGraph& needed, double share) {
   constexpr double kRounding = 1e-9;
   std::vector<SetPartners> all;
   for (const PartnerLimit& limit : certified) {
     all.push_back({limit.set, {}});
+    std::vector<std::uint32_t>& partners = all.back().partners;
     for (const ContactBound& contact : needed.contacts) {
       if (contact.set != limit.set || !contact.counted) continue;
-      for (const double partners : contact.neighbours) {
-        const double most = limit.certified[all.back().partners.size()];
+      for (std::size_t m = 0; m < contact.members.size(); ++m) {
+        const double most = limit.certified[partners.size()];
+        const double least = contact.neighbours[m];
         const double here =
-            partners > 0.0 && most > partners ? partners * std::pow(most / partners, share) : most;
-        all.back().partners.push_back(static_cast<std::uint32_t>(std::min(here + kRounding, most)));
+            least > 0.0 && most > least ? least * std::pow(most / least, share) : most;
+        const bool is_mass = network.mats[contact.members[m]].kind == engine::MatKind::kMass;
+        partners.push_back(is_mass ? static_cast<std::uint32_t>(std::min(here + kRounding, most))
+                                   : kAnyNumber);
       }
     }
   }
   return all;
 }
 
-/// The graph with at least these partners.
+/// The graph with at least these partners of masses.
 LiaisonGraph with_partners(LiaisonGraph graph, const std::vector<SetPartners>& all) {
   for (const SetPartners& set : all) {
     std::size_t member = 0;
     for (ContactBound& contact : graph.contacts) {
       if (contact.set != set.set || !contact.counted) continue;
-      for (double& partners : contact.neighbours)
-        partners = std::max<double>(partners, set.partners[member++]);
+      for (double& partners : contact.neighbours) {
+        const std::uint32_t here = set.partners[member++];
+        if (here != kAnyNumber) partners = std::max<double>(partners, here);
+      }
     }
   }
   return graph;
 }
 
-/// The limits of a graph with these partners, its energies raised as far as its step is certified.
-/// @param start  a graph with the energies of the start, which is certified with them
-ReachLimit limit_with(const NetworkDescription& network, const LiaisonGraph& start,
+/// The graphs of a network by the factor of its energies, each made once.
+class GraphsByEnergy {
+ public:
+  GraphsByEnergy(const NetworkDescription& network, LiaisonGraph start) : network_(network) {
+    graphs_.emplace(1.0, std::move(start));
+  }
+  const LiaisonGraph& at(double factor) {
+    const auto known = graphs_.find(factor);
+    if (known != graphs_.end()) return known->second;
+    return graphs_.emplace(factor, liaison_graph(network_, factor)).first->second;
+  }
+
+ private:
+  const NetworkDescription& network_;
+  std::map<double, LiaisonGraph> graphs_;
+};
+
+/// The limits with these partners, the energies raised as far as the step is certified. Those of the start hold.
+ReachLimit limit_with(const NetworkDescription& network, GraphsByEnergy& graphs,
                       std::vector<SetPartners> partners) {
   constexpr double kFinest = 1.1;
-  LiaisonGraph graph = with_partners(start, partners);
-  const auto holds = [&](double factor) {
-    LiaisonGraph wider = with_partners(liaison_graph(network, factor), partners);
-    if (!is_certified(network, wider)) return false;
-    graph = std::move(wider);
-    return true;
-  };
-  largest_factor(holds, kFinest);
-  ReachLimit limit = limit_of(network, graph);
+  const double factor = largest_factor(
+      [&](double trial) {
+        return is_certified(network, with_partners(graphs.at(trial), partners));
+      },
+      kFinest);
+  ReachLimit limit = limit_of(network, with_partners(graphs.at(factor), partners));
   limit.partners = std::move(partners);
   return limit;
 }
@@ -286,14 +309,17 @@ bool has_room(const ReachLimit& limit, const engine::World& world) noexcept {
 ReachLimit reach_limit(const NetworkDescription& network) {
   const LiaisonGraph start = liaison_graph(network);
   if (start.bounded || !is_certified(network, start)) return {};
-  ReachLimit limit = limit_with(network, start, {});
+  GraphsByEnergy graphs(network, start);
+  ReachLimit limit = limit_with(network, graphs, {});
   if (limit.is_infinite()) return limit;
   const std::vector<PartnerLimit> certified = partner_limits(network, start, /*holds=*/true);
-  limit.partners = partners_of(certified, start, 0.0);
-  for (const double share : {0.5, 1.0}) {
-    std::vector<SetPartners> partners = partners_of(certified, start, share);
-    if (partners == limit.partners) continue;
-    limit.with_more_partners.push_back(limit_with(network, start, std::move(partners)));
+  limit.partners = partners_of(network, certified, start, 0.0);
+  const std::vector<SetPartners>* before = &limit.partners;
+  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+    std::vector<SetPartners> partners = partners_of(network, certified, start, share);
+    if (partners == *before) continue;
+    limit.with_more_partners.push_back(limit_with(network, graphs, std::move(partners)));
+    before = &limit.with_more_partners.back().partners;
   }
   return limit;
 }

@@ -44,7 +44,7 @@ bool is_error_large(const engine::Energy& energy) noexcept;
 /// more while a hand plays on: viscosity dissipates them, and no motion grows.
 bool makes_energy(const engine::Energy& energy) noexcept;
 
-/// Real time: O(MATs), no allocation.
+/// Real time: O(MATs + members of sets), no allocation.
 /// @param energy  of the world now, as an EnergyWatch has it
 BoundSigns signs_of(const engine::World& world, const engine::Energy& energy,
                     const plan::ReachLimit& reach) noexcept;
