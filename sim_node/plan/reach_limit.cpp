@@ -221,7 +221,7 @@ Motion motion_of(const engine::World& world, const std::vector<std::uint32_t>& m
   return motion;
 }
 
-constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoMass = std::numeric_limits<std::uint32_t>::max();
 
 /// The needed partners times this power of what they are certified to grow by; any number for what is no mass.
 std::vector<SetPartners> partners_of(const NetworkDescription& network,
@@ -241,7 +241,7 @@ std::vector<SetPartners> partners_of(const NetworkDescription& network,
             least > 0.0 && most > least ? least * std::pow(most / least, share) : most;
         const bool is_mass = network.mats[contact.members[m]].kind == engine::MatKind::kMass;
         partners.push_back(is_mass ? static_cast<std::uint32_t>(std::min(here + kRounding, most))
-                                   : kAnyNumber);
+                                   : kNoMass);
       }
     }
   }
@@ -256,7 +256,7 @@ LiaisonGraph with_partners(LiaisonGraph graph, const std::vector<SetPartners>& a
       if (contact.set != set.set || !contact.counted) continue;
       for (double& partners : contact.neighbours) {
         const std::uint32_t here = set.partners[member++];
-        if (here != kAnyNumber) partners = std::max<double>(partners, here);
+        if (here != kNoMass) partners = std::max<double>(partners, here);
       }
     }
   }
