@@ -315,7 +315,7 @@ ReachLimit reach_limit(const NetworkDescription& network) {
   const std::vector<PartnerLimit> certified = partner_limits(network, start, /*holds=*/true);
   limit.partners = partners_of(network, certified, start, 0.0);
   const std::vector<SetPartners>* before = &limit.partners;
-  for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+  for (const double share : {0.5, 1.0}) {
     std::vector<SetPartners> partners = partners_of(network, certified, start, share);
     if (partners == *before) continue;
     limit.with_more_partners.push_back(limit_with(network, graphs, std::move(partners)));

@@ -45,7 +45,7 @@ struct ReachLimit {
 
 /// The Reach of the start, its energies raised by up to a million as long as the step is certified, to
 /// a tenth. Where Lennard-Jones alone has no largest slope in a set, the energy of its pairs is raised
-/// further: of all such sets together, then of one after the other. With more partners there are up to four limits,
+/// further: of all such sets together, then of one after the other. With more partners there are up to two limits,
 /// the last with those of partner_limits(), which hold for the energies of the start. Infinite where every law has a largest
 /// slope, and where the step is not certified. O(liaisons), and O(liaisons) for each set.
 ReachLimit reach_limit(const engine::NetworkDescription& network);
