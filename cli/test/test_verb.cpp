@@ -2,6 +2,7 @@
 #include "cli/test/test_verb.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "cli/programs.h"
+#include "cli/test/test_words.h"
 
 namespace cordis::cli {
 namespace {
@@ -23,7 +25,7 @@ std::filesystem::path test_directory() {
   return std::filesystem::exists(all / "CTestTestfile.cmake") ? all : tree;
 }
 
-int hand_over_to_ctest(const std::vector<std::string>& ctest_options) {
+int hand_over_to_ctest(const TestWords& asked) {
   const std::string directory = test_directory();
   std::vector<std::string> words{
       "ctest",
@@ -33,7 +35,8 @@ int hand_over_to_ctest(const std::vector<std::string>& ctest_options) {
       "--no-tests=error",
       "-j" + std::to_string(std::thread::hardware_concurrency() +
                             1)};  // tests of processes wait more than they compute
-  words.insert(words.end(), ctest_options.begin(), ctest_options.end());
+  words.insert(words.end(), asked.ctest.begin(), asked.ctest.end());
+  if (asked.soak_s > 0.0) setenv("CORDIS_SOAK_S", std::to_string(asked.soak_s).c_str(), 1);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -45,14 +48,18 @@ int hand_over_to_ctest(const std::vector<std::string>& ctest_options) {
 
 void add_test_verb(CommandLine& line) {
   auto ctest_options = std::make_shared<std::vector<std::string>>();
-  Verb& verb = line.verb("test", "[options of ctest]", "Run the tests; ./cordis builds them first");
+  Verb& verb = line.verb("test", "[--long [--hours N]] [options of ctest]",
+                         "Run the tests; ./cordis builds them first");
   verb.hand_on_words(*ctest_options);
   verb.examples(
       "Examples:\n"
       "  cordis test                    # all tests, also under the sanitizers\n"
       "  cordis test -L unit            # those with a label: unit, golden, integration\n"
-      "  cordis test -R World -V        # those whose name matches, with all they print\n");
-  verb.action([ctest_options] { return hand_over_to_ctest(*ctest_options); });
+      "  cordis test -R World -V        # those whose name matches, with all they print\n"
+      "  cordis test --long -N          # names of the campaigns, which --long runs for many "
+      "hours\n"
+      "  cordis test --long --hours 8 -R Soak -N  # those whose sessions last 8 hours\n");
+  verb.action([ctest_options] { return hand_over_to_ctest(test_words(*ctest_options)); });
 }
 
 }  // namespace cordis::cli
