@@ -103,7 +103,9 @@ inline NetworkDescription free_cluster(std::uint32_t count, std::uint32_t link_c
     return vector;
   };
   for (std::uint32_t i = 0; i < count; ++i) {
-    scene.mats.push_back(mass(uniform(0.05, 0.2), within(0.0, 1.0), within(-1.0, 1.0)));
+    const Vec3 velocity = within(-1.0, 1.0);  // in an order that no compiler chooses
+    const Vec3 position = within(0.0, 1.0);
+    scene.mats.push_back(mass(uniform(0.05, 0.2), position, velocity));
   }
   while (scene.links.size() < link_count) {
     const auto a = static_cast<std::uint32_t>(random() % count);

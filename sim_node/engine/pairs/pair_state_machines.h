@@ -130,6 +130,7 @@ class PairStateMachines {
   double* array(Array which) noexcept { return values_.data() + which * block_capacity_; }
   bool remembers(const PairStep& step) const noexcept { return !stateless_ && !step.frozen; }
   double* memory_of(std::size_t pair) noexcept {
+    if (memory_.empty()) return nullptr;
     return memory_.data() + pair / kPairBatch * states_.slot_count() * kPairBatch +
            pair % kPairBatch;
   }
