@@ -41,12 +41,11 @@ fake_ctest() {  # ... --output-log LOG: one test passes, one is skipped and one 
   } >"$log"
 }
 
-fake_cmake() {  # -S SOURCE --preset PRESET
-  note "cmake $4"
-  local cache=$2/build/$4/CMakeCache.txt
-  [[ ! -e $cache || $(<"$cache") == "$2" ]] || exit 1  # as the real one, which refuses a cache of another folder
-  mkdir -p "${cache%/*}"
-  printf '%s\n' "$2" >"$cache"
+fake_cmake() {  # --fresh -S SOURCE --preset PRESET
+  note "cmake $5"
+  [[ $1 == --fresh ]] || exit 1  # without it the real one refuses a cache of another folder, and forgets options with another compiler
+  mkdir -p "$3/build/$5"
+  printf '%s\n' "$3" >"$3/build/$5/CMakeCache.txt"
 }
 
 case ${0##*/} in
