@@ -29,6 +29,7 @@ void Plug::into_serial_line(const std::filesystem::path& link) {
   tcsetattr(keeper_, TCSANOW, &line);
   std::filesystem::remove(link);
   std::filesystem::create_symlink(ptsname(wire_), link);
+  link_ = link;
   step();
 }
 
@@ -48,6 +49,11 @@ int Plug::into_udp() {
 void Plug::pull() {
   lives_ = false;
   if (thread_.joinable()) thread_.join();
+  std::error_code ignored;
+  if (!link_.empty())
+    std::filesystem::remove(link_,
+                            ignored);  // the number of the line may soon be that of another board
+  link_.clear();
   if (keeper_ >= 0) close(keeper_);
   if (wire_ >= 0) close(wire_);
   wire_ = keeper_ = -1;

@@ -55,6 +55,7 @@ class Plug {
   std::atomic<bool> lives_{false};
   std::atomic<bool> stalled_{false};
   int wire_ = -1;
+  std::filesystem::path link_;  // of a serial line
   int keeper_ = -1;
   bool udp_ = false;
   sockaddr_in peer_{};
