@@ -367,7 +367,10 @@ double fall_of_one_step(const NetworkDescription& network) {
   for (int moment = 0; moment < 100; ++moment) {
     std::vector<Vec3> force(network.mats.size(), Vec3::Zero());
     for (const engine::Drive& drive : network.drives) {
-      if (drive.is_force) force[drive.mat] += value_at(network, drive, 1e-3 * moment);
+      if (!drive.is_force || engine::asks_for_variable(network.time_functions[drive.function]))
+        continue;
+      const engine::Mat& mat = network.mats[drive.mat];
+      force[drive.mat] += force_at(network, drive, {1e-3 * moment, mat.position, mat.velocity});
     }
     double sum = 0.0;
     for (std::size_t i = 0; i < network.mats.size(); ++i) {
