@@ -10,7 +10,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { promisify } from 'node:util';
 
-const MAX_TOGETHER = 36;
+const MAX_TOGETHER = 24;
 const [source, build] = process.argv.slice(2, 4).map((folder) => fs.realpathSync(folder));
 const beginning = process.argv[4] ?? '';
 const clean = path.join(build, 'clang-tidy');
@@ -28,10 +28,10 @@ function sourcesIn(file) {
   return [...fs.readFileSync(file, 'utf8').matchAll(/^#include "(.*)"$/gm)].map((match) => match[1]);
 }
 
-/// The program or library whose sources are read together.
-const partOf = (name) => name.split('/')[0];
+/// The folder whose sources are read together. The verbs of `cli` have a folder each, and mostly one source.
+const folderOf = (name) => path.dirname(name).split('/').slice(0, name.startsWith('cli/') ? 1 : 2).join('/');
 
-/// The sources that the tree compiles, each once, in groups of the same part and the same options.
+/// The sources that the tree compiles, each once, in groups of the same folder and the same options.
 function groups() {
   const groups = new Map();
   const seen = new Set();
@@ -43,7 +43,7 @@ function groups() {
       if (name.startsWith('..') || member.startsWith(build + path.sep) || name.startsWith('tests/')) continue;
       if (!name.startsWith(beginning) || !name.endsWith('.cpp') || seen.has(name)) continue;
       seen.add(name);
-      const key = JSON.stringify([partOf(name), options]);
+      const key = JSON.stringify([folderOf(name), options]);
       if (!groups.has(key)) groups.set(key, { options, members: [] });
       groups.get(key).members.push({ file: member, object });
     }
