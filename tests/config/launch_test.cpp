@@ -79,11 +79,11 @@ TEST(Launch, HasDefaults) {
 /// Which nodes of a session are required, and which start again when they die.
 std::string keys_of_launcher(const std::string& clock, const std::string& more_keys = "") {
   Problems problems;
-  const Launch launch =
-      load_launch_text("cordis: 1\nclock: " + clock + "\nnodes:\n  sim: {node: sim_node" +
-                           more_keys + "}\n  key: {node: device_node" + more_keys +
-                           "}\n  view: {node: viz_node" + more_keys + "}\n",
-                       "l.yaml", {}, problems);
+  const Launch launch = load_launch_text(
+      "cordis: 1\nclock: " + clock + "\nnodes:\n  sim: {node: sim_node" + more_keys +
+          "}\n  key: {node: device_node" + more_keys + "}\n  view: {node: viz_node" + more_keys +
+          "}\n  take: {node: record_node" + more_keys + "}\n",
+      "l.yaml", {}, problems);
   EXPECT_EQ(problems.text(), "");
   std::string text;
   for (const LaunchNode& node : launch.nodes) {
@@ -94,14 +94,16 @@ std::string keys_of_launcher(const std::string& clock, const std::string& more_k
   return text;
 }
 
-TEST(Launch, RequiresAllButTheViewAndStartsAgainWhatDoesNotChangeTheResult) {
+TEST(Launch, RequiresAllButViewAndRecorderAndStartsAgainWhatDoesNotChangeTheResult) {
   EXPECT_EQ(keys_of_launcher("realtime"),
-            "sim required respawn, key required respawn, view respawn, ");
+            "sim required respawn, key required respawn, view respawn, take respawn, ");
   for (const std::string clock : {"lockstep", "asap"})
-    EXPECT_EQ(keys_of_launcher(clock), "sim required, key required, view respawn, ");
+    EXPECT_EQ(keys_of_launcher(clock), "sim required, key required, view respawn, take respawn, ");
   EXPECT_EQ(keys_of_launcher("lockstep", ", required: true, respawn: true"),
-            "sim required respawn, key required respawn, view required respawn, ");
-  EXPECT_EQ(keys_of_launcher("realtime", ", required: false, respawn: false"), "sim, key, view, ");
+            "sim required respawn, key required respawn, view required respawn, "
+            "take required respawn, ");
+  EXPECT_EQ(keys_of_launcher("realtime", ", required: false, respawn: false"),
+            "sim, key, view, take, ");
 }
 
 TEST(Launch, LeavesOutTheNodesOfAnotherClock) {
