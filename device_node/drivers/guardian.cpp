@@ -175,6 +175,7 @@ Guardian* Guardian::of_process() noexcept {
 
 bool Guardian::start() noexcept {
   std::array<int, 2> ends{};
+  id_ = -1;
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return false;
   id_ = fork();
   if (id_ == 0) Life(ends[1], *shared_, stall_limit_).run();
@@ -235,8 +236,9 @@ bool Guardian::has_ended() noexcept {
 void Guardian::watch() noexcept {
   const std::int64_t now = node::monotonic_nsec();
   restarts_.report(now);
-  if (id_ <= 0 || !has_ended()) return;
-  close(socket_);
+  failures_.report(now);
+  if (id_ > 0 && !has_ended()) return;
+  if (socket_ >= 0) close(socket_);
   socket_ = -1;
   if (start()) {
     if (restarts_.record(now))
@@ -244,10 +246,12 @@ void Guardian::watch() noexcept {
     if (file_ >= 0) send(file_);
     return;
   }
-  spdlog::error(
-      "the guardian process of the motors was killed and cannot be started again: {}; end this "
-      "node, or a kill of it leaves the last force on the motors",
-      std::strerror(errno));
+  const std::string reason = std::strerror(errno);
+  if (failures_.record(now))
+    spdlog::error(
+        "the guardian process of the motors was killed and cannot be started again: {}; end this "
+        "node, or a kill of it leaves the last force on the motors",
+        reason);
 }
 
 }  // namespace cordis::device

@@ -45,7 +45,8 @@ class Guardian {
   /// How often it has taken the force because the loop stalled.
   std::uint32_t release_count() const noexcept;
 
-  /// Starts it again if it has ended, and logs that. Cheap: a system call.
+  /// Starts it again if it has ended, and logs that. It tries at each call until that succeeds.
+  /// Cheap: a system call.
   void watch() noexcept;
 
  private:
@@ -66,6 +67,8 @@ class Guardian {
   int file_ = -1;
   ReleaseFrame frame_;
   node::RepeatedEvent restarts_{"the guardian process of the motors was killed and started again"};
+  node::RepeatedEvent failures_{"the guardian process of the motors still cannot be started again",
+                                spdlog::level::err};
 };
 
 }  // namespace cordis::device
