@@ -1,9 +1,14 @@
 // tests/integration/respawn_test.cpp -- any node of a shipped session may be killed while the
 // others go on: the launcher starts it again.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -12,9 +17,11 @@
 #include <unistd.h>
 
 #include "idl/gesture.h"
+#include "node/config/launch.h"
 #include "node/dds/reader.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/rounds.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::test {
@@ -131,6 +138,90 @@ TEST_F(Respawn, OfEachNodeInTurnLeavesTheSessionWhole) {
               std::string::npos);
   }
 }
+
+config::Launch load(const std::string& path) {
+  config::Problems problems;
+  config::Launch launch = config::load_launch(path, {}, problems);
+  EXPECT_EQ(problems.text(), "") << path;
+  return launch;
+}
+
+/// The launch files that ship with `clock: realtime`, without `.yaml`. A build that checks
+/// preconditions is too slow for the larger scenes: one of each set of nodes.
+std::vector<std::string> realtime_sessions() {
+  if (rounds(2) == 1) return {"mobile", "plucked_string"};
+  std::vector<std::string> names;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(CORDIS_SOURCE_DIR "/launch_configs")) {
+    if (entry.path().extension() != ".yaml") continue;
+    if (load(entry.path()).clock == config::Clock::kRealtime) names.push_back(entry.path().stem());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+/// `cordis run` of a launch file that ships.
+class ShippedSession : public testing::TestWithParam<std::string> {
+ protected:
+  ShippedSession()
+      : launch_(load(file())),
+        participant_({own_domain(), launch_.session, "observer", false, true}),
+        status_(participant_),
+        launcher_({program_path("cordis"), "run", file(), "domain=" + std::to_string(own_domain()),
+                   "view.port=0", "--no-color"}) {}
+
+  ~ShippedSession() override {
+    if (HasFailure()) std::fprintf(stderr, "---- output\n%s\n", launcher_.output().c_str());
+  }
+
+  static std::string file() { return CORDIS_SOURCE_DIR "/launch_configs/" + GetParam() + ".yaml"; }
+
+  /// True once a life of the node runs that is not the one before. A hot standby stands by, but for
+  /// what it plays in between.
+  bool runs(const config::LaunchNode& node, std::uint64_t epoch_before = 0) {
+    const bool is_standby = node.section.find("standby_for").exists();
+    return status_.wait_for(node.name, [&](const msg::NodeStatus& status) {
+      return status.epoch() != epoch_before &&
+             status.phase() == (is_standby ? msg::PHASE_STANDBY : msg::PHASE_RUNNING);
+    });
+  }
+
+  config::Launch launch_;
+  dds::Participant participant_;
+  StatusWatch status_;
+  ChildProcess launcher_;
+};
+
+TEST_P(ShippedSession, GoesOnWithoutEachOfItsNodesUntilThatIsBack) {
+  for (const config::LaunchNode& node : launch_.nodes) ASSERT_TRUE(runs(node)) << node.name;
+
+  for (const config::LaunchNode& killed : launch_.nodes) {
+    std::map<std::string, std::uint64_t> epochs;
+    for (const config::LaunchNode& node : launch_.nodes)
+      epochs[node.name] = status_.of(node.name).epoch();
+    const pid_t process = process_of(launcher_, killed.name);
+    ASSERT_GT(process, 0) << killed.name;
+
+    ASSERT_EQ(kill(process, SIGKILL), 0);
+
+    ASSERT_TRUE(runs(killed, epochs[killed.name])) << killed.name << " does not run again";
+    for (const config::LaunchNode& node : launch_.nodes) {
+      ASSERT_TRUE(runs(node)) << node.name << " after " << killed.name;
+      if (node.name == killed.name) continue;
+      EXPECT_EQ(status_.of(node.name).epoch(), epochs[node.name])
+          << node.name << " was disturbed by " << killed.name;
+    }
+  }
+
+  launcher_.signal(SIGINT);
+  EXPECT_EQ(launcher_.wait(kPatience), 0);
+  for (const config::LaunchNode& node : launch_.nodes)
+    EXPECT_NE(launcher_.output().find(node.name + " was started again 1 time\n"), std::string::npos)
+        << node.name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Launch, ShippedSession, testing::ValuesIn(realtime_sessions()),
+                         [](const auto& instance) { return instance.param; });
 
 }  // namespace
 }  // namespace cordis::test
