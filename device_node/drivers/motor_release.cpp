@@ -58,7 +58,10 @@ void install_crash_release() noexcept {
   action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
   sigemptyset(&action.sa_mask);
   for (const int number : kSignals) {
-    sigaction(number, &action, &actions_before[static_cast<std::size_t>(number)]);
+    struct sigaction& before = actions_before[static_cast<std::size_t>(number)];
+    sigaction(number, nullptr, &before);
+    const bool is_ignored = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN;
+    if (!is_ignored) sigaction(number, &action, nullptr);  // else it ends nothing
   }
 }
 

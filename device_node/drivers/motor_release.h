@@ -22,7 +22,8 @@ struct ReleaseFrame {
 
 /// From now on each signal that ends a process by its default action (SIGSEGV, SIGABRT, SIGQUIT and
 /// so on) writes the armed frame first, and then does what it did before. Signals with a handler
-/// keep it. Call on the loop thread: its handlers get a stack of their own.
+/// keep it. One that is ignored, as SIGQUIT is in the background of a shell, stays so. Call on the
+/// loop thread: its handlers get a stack of their own.
 void install_crash_release() noexcept;
 
 /// The frame and the descriptor that a crash uses. `frame` is copied.
