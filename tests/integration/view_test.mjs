@@ -1,18 +1,57 @@
-// tests/integration/view_test.mjs -- the view goes on, whatever a person presses: every
-// button of the page and scenes loaded from a shell while frames are on their way. Real sim_node,
-// device_node, viz_node, launcher and Chromium. What is asked next is drawn by lot; the seed is
-// printed.
+// tests/integration/view_test.mjs -- the view goes on, whatever a person presses: every button,
+// list and input of the page, and scenes loaded on the page and from a shell, while frames are on
+// their way. Real sim_node, device_node, viz_node, launcher and Chromium. The page itself says what
+// there is to press. What is pressed next is drawn by lot; the seed is printed.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
-import { drawn, openPage, textOf, viz } from '../viz/browser.mjs';
+import { drawn, openPage, viz } from '../viz/browser.mjs';
 import { lot, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
 
-const ACTIONS = 50;
+const DESCRIPTIONS = 50; // resets and loads
+const MOST_ROUNDS = 300;
 const LAUNCH = join(source, 'launch_configs/plucked_string.yaml');
 const SCENES = ['membrane', 'hanging_chain', 'plucked_string'].map((name) => join(source, `launch_configs/scenes/${name}.yaml`));
+/** Controls that are not there in this session, by name, and which test presses them. */
+const ELSEWHERE = {
+  '#sound-on': 'of a scene that sounds: sound_page_test.mjs',
+  '#volume': 'of a scene that sounds: sound_page_test.mjs',
+  '#seek': 'of a take: take_page_test.mjs',
+  '#take-rate': 'of a take: take_page_test.mjs',
+};
 
-/** Presses a button at once, wherever the page is in drawing. */
-const press = (page, selector) => page.evaluate((one) => document.querySelector(one).click(), selector);
+/**
+ * The controls of the page by name, and whether one of that name can be used now. What the page makes, as the sliders of
+ * parameters, has the name of its kind. Runs in the page. @param press  name of one that is used first
+ */
+function controls([fixedIds, press, chance]) {
+  const nameOf = (control) => {
+    const data = Object.entries(control.dataset).map(([key, value]) => `[data-${key}="${value}"]`).join('');
+    if (fixedIds.includes(control.id)) return `#${control.id}`;
+    let near = control.parentElement;
+    while (near !== null && !fixedIds.includes(near.id)) near = near.parentElement;
+    const kind = control.matches('input') ? `[type=${control.type}]` : control.matches('button') && data === '' ? ` "${control.textContent}"` : '';
+    return `#${near?.id} ${control.localName}${kind}${data}`;
+  };
+  const use = (control) => {
+    const isNumber = control.type === 'range' || control.type === 'number';
+    if (control.matches('select')) {
+      const first = control.id === 'scenes' ? 1 : 0; // before it stands what the list is for
+      control.selectedIndex = first + Math.floor(chance * (control.options.length - first));
+    } else if (isNumber) {
+      const [min, max] = control.type === 'range' ? [Number(control.min), Number(control.max)] : [0, 2 * Number(control.value)];
+      const tenth = (max - min) / 10;
+      control.value = String(Number(control.value) + (Number(control.value) > (min + max) / 2 ? -tenth : tenth));
+    } else {
+      return control.click();
+    }
+    for (const type of ['input', 'change']) control.dispatchEvent(new Event(type, { bubbles: true }));
+  };
+  const isUsable = (control) => control.checkVisibility() && !control.disabled;
+  const all = [...document.querySelectorAll('button, input, select, textarea, summary, a[href], [role=button], [contenteditable]')];
+  const named = all.filter((control) => press !== undefined && nameOf(control) === press && isUsable(control));
+  if (named.length > 0) use(named[Math.floor(chance * named.length)]);
+  return all.map((control) => ({ name: nameOf(control), usable: isUsable(control) }));
+}
 
 /** Does something that describes the scene again, and waits until the page has the new description. */
 async function describeAnew(page, what, action) {
@@ -33,32 +72,63 @@ async function answered(page, verb, action) {
   await until(`${verb} is answered`, async () => (await newest()) > before);
 }
 
-/** What a person can do, by name. */
-function actionsOf(session, draw) {
-  const { page } = session;
-  const verb = (name) => async () => {
-    const button = `#control button[data-verb="${name}"]`;
-    if (name === 'reset') return describeAnew(page, name, () => press(page, button));
-    return answered(page, name, () => press(page, button));
-  };
-  const tool = (key) => () => press(page, `#tools button[data-key="${key}"]`);
-  const colours = () => page.keyboard.press('c');
-  const motion = () => page.keyboard.press('m');
-  const window = (seconds) => () => press(page, `#windows button[data-window="${seconds}"]`);
-  const scene = () => {
-    const file = SCENES[Math.floor(draw() * SCENES.length)];
-    return describeAnew(page, `load ${file}`, () => load(session, file));
-  };
-  return {
-    pause: verb('pause'),
-    step: verb('step'),
-    reset: verb('reset'),
-    load: scene,
-    colours,
-    motion,
-    ...Object.fromEntries(['f', '1', '2', '3', '4', 'o', 'r', 't', 'g', 'n', 'h', 'l', 's', '?'].map((key) => [`tool '${key}'`, tool(key)])),
-    ...Object.fromEntries([1, 5, 20].map((seconds) => [`window ${seconds} s`, window(seconds)])),
-  };
+/** A person before the page, who draws by lot what comes next. */
+class Person {
+  known = new Set(); // names of controls that have been there
+  used = new Set();
+  log = [];
+
+  constructor(session, draw, fixedIds) {
+    Object.assign(this, { session, page: session.page, draw, fixedIds });
+  }
+
+  of = (list) => list[Math.floor(this.draw() * list.length)];
+
+  /** The page's controls, after one of them was used. */
+  async controls(press, chance) {
+    const all = await this.page.evaluate(controls, [this.fixedIds, press, chance]);
+    for (const { name } of all) this.known.add(name);
+    return all;
+  }
+
+  /** Names of what has not been used: of what can be now, and of the rest. */
+  async left() {
+    const now = new Set((await this.controls()).filter(({ usable }) => usable).map(({ name }) => name));
+    const unused = [...this.known].filter((name) => !this.used.has(name) && !(name in ELSEWHERE));
+    return { usable: unused.filter((name) => now.has(name)), hidden: unused.filter((name) => !now.has(name)) };
+  }
+
+  /** Uses a control at once, wherever the page is in drawing. */
+  async use(name) {
+    const { page } = this;
+    this.used.add(name);
+    this.log.push(name);
+    const press = () => this.controls(name, this.draw());
+    if (name.endsWith('[data-verb="reset"]') || name === '#scenes') return describeAnew(page, name, press);
+    if (name.includes('[data-verb=')) return answered(page, name, press);
+    return press();
+  }
+
+  /** Has the scene described again, in one of three ways. */
+  async describe() {
+    const way = this.of(['reset', 'reset', 'list', 'list', 'shell']);
+    if (way === 'reset') return this.use('#control button[data-verb="reset"]');
+    if (way === 'list') return this.use('#scenes');
+    const file = this.of(SCENES);
+    this.log.push(`ctl load ${file}`);
+    return describeAnew(this.page, `load ${file}`, () => load(this.session, file));
+  }
+
+  /** Picks a mass, so that its controls are shown: that of a key, or one in the view. */
+  async pick() {
+    const key = (await this.controls()).find(({ name, usable }) => usable && name.startsWith('#keyboards '));
+    if (key !== undefined) return this.use(key.name);
+    const point = await this.page.evaluate((chance) => window.viz.project(Math.floor(chance * window.viz.lastFrame.matCount)), this.draw());
+    const { width, height } = this.page.viewportSize();
+    if (!(point?.x >= 0 && point.x < width && point.y >= 0 && point.y < height)) return; // it is outside of the view
+    this.log.push('a click at a mass');
+    await this.page.mouse.click(point.x, point.y);
+  }
 }
 
 /** Three frames more are drawn, or come while the view is frozen. */
@@ -83,27 +153,35 @@ const cases = {
     await drawn(page, 3);
   },
 
-  'the view goes on after every button and every scene': async (session) => {
+  'the view goes on after every control and every scene': async (session) => {
     const { page } = session;
     const seed = Number(process.env.CORDIS_SEED ?? Date.now() % 100_000);
     console.log(`CORDIS_SEED=${seed}`);
     const draw = lot(seed);
-    const actions = actionsOf(session, draw);
-    const names = Object.keys(actions);
-    const describing = ['reset', 'load'];
-    for (let i = 0; i < ACTIONS; ++i) {
-      const name = i < names.length ? names[i] : i % 2 ? describing[i % 4 >> 1] : names[Math.floor(draw() * names.length)];
-      await pause(draw() * 80); // anywhere between two frames
+    const html = await (await page.request.get(page.url())).text();
+    const person = new Person(session, draw, [...html.matchAll(/ id="([^"]+)"/g)].map(([, id]) => id));
+    let described = 0;
+    let left = await person.left();
+    for (let round = 1; round <= MOST_ROUNDS && (described < DESCRIPTIONS || left.usable.length + left.hidden.length > 0); ++round) {
       const begin = Date.now();
-      await actions[name]();
+      person.log = [];
+      await pause(draw() * 80); // anywhere between two frames
+      if (left.usable.length > 0) await person.use(person.of(left.usable));
+      if (described++ < DESCRIPTIONS) await person.describe();
+      const again = [...person.used].filter((name) => name !== '#scenes');
+      if (again.length > 0 && draw() < 0.5) await person.use(person.of(again));
+      if (left.hidden.some((name) => name.startsWith('#picked'))) await person.pick();
       try {
         await goesOn(page);
       } catch (error) {
         const seen = await page.evaluate(() => [window.viz.lastFrame, window.viz.scene, window.viz.errors]);
-        throw new Error(`after '${name}' (${i + 1} of ${ACTIONS}): ${error.message}; ${JSON.stringify(seen)}`);
+        throw new Error(`round ${round}, after ${person.log.join(', ')}: ${error.message}; ${JSON.stringify(seen)}`);
       }
-      console.log(`  ${i + 1}. ${name}: ${Date.now() - begin} ms`);
+      console.log(`  ${round}. ${person.log.join(', ')}: ${Date.now() - begin} ms`);
+      left = await person.left();
     }
+    assert.deepEqual([...left.usable, ...left.hidden], [], 'each control was used, or another test is named that does so');
+    assert.deepEqual(Object.keys(ELSEWHERE).filter((name) => !person.known.has(name)), [], 'all of ELSEWHERE exist');
   },
 
   'nothing went wrong in the page': async ({ page, pageErrors }) => {
@@ -114,7 +192,7 @@ const cases = {
 async function open() {
   const session = await Session.open();
   const words = ['run', LAUNCH, '--no-color', `domain=${session.domain}`, 'view.port=0'];
-  session.launcher = session.start('cordis', program('cordis'), words);
+  session.launcher = session.start('cordis', program('cordis'), [...words, 'view.scenes=[scenes/membrane.yaml, scenes/hanging_chain.yaml]', 'view.parameters=true']);
   await openPage(session, await session.launcher.says(/(http:\/\/127\.0\.0\.1:\d+)/));
   await drawn(session.page, 3);
   return session;
