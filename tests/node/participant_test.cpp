@@ -3,6 +3,9 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -25,6 +28,7 @@
 #include "node/time.h"
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
+#include "tests/support/rounds.h"
 #include "tests/support/test_domain.h"
 
 namespace cordis::dds {
@@ -96,6 +100,53 @@ TEST(Participant, ForgetsAProcessThatIsKilledBeforeItsParentHasWaitedForIt) {
 
   EXPECT_TRUE(eventually([&] { return !knows(here, "zombie/killed"); }));
   EXPECT_EQ(killed->wait(kPatience), 128 + SIGKILL);
+}
+
+/// Processor time of this process for one message to those who listen [s]: the mean of many.
+double cost_of_a_message(Writer<msg::SceneEvents>& writer) {
+  constexpr int kMessages = 2000;
+  msg::SceneEvents events;
+  timespec begin{};
+  timespec end{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &begin);
+  for (int n = 0; n < kMessages; ++n) EXPECT_TRUE(writer.write(events));
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
+  return (static_cast<double>(end.tv_sec - begin.tv_sec) +
+          1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec)) /
+         kMessages;
+}
+
+/// CORDIS_RESTARTS of the environment are done by hand, for the figure in docs/reliability.md.
+TEST(Participant, KeepsNothingOfProcessesThatWereKilledAndStartedAgain) {
+  const char* const by_hand = std::getenv("CORDIS_RESTARTS");
+  const int restarts = by_hand != nullptr ? std::atoi(by_hand) : test::rounds(30);
+  Participant here(member("restarts", "here"));
+  const Reader<msg::NodeStatus> statuses(here, Topic::kStatus);
+  Writer<msg::SceneEvents> writer(here, Topic::kEvents);
+  const auto partner = speaker("restarts", "partner");
+  ASSERT_TRUE(eventually([&] {
+    return statuses.matched_count() == 1 && writer.matched_count() == 1 && here.peers().size() == 1;
+  }));
+  const std::size_t writers = here.writers().size();
+  const double cost_before_s = cost_of_a_message(writer);
+
+  for (int n = 0; n < restarts; ++n) {
+    const auto node = speaker("restarts", "node");
+    ASSERT_TRUE(eventually([&] { return knows(here, "restarts/node"); })) << "start " << n;
+    node->signal(SIGKILL);
+    ASSERT_EQ(node->wait(kPatience), 128 + SIGKILL);
+    if (n % 5 != 4) continue;  // of the others some are killed before the last one is forgotten
+    ASSERT_TRUE(eventually([&] { return !knows(here, "restarts/node"); })) << "start " << n;
+  }
+
+  EXPECT_TRUE(eventually([&] {
+    return here.peers().size() == 1 && here.writers().size() == writers &&
+           statuses.matched_count() == 1 && writer.matched_count() == 1;
+  })) << here.peers().size()
+      << " peers, " << here.writers().size() << " writers";
+  EXPECT_TRUE(knows(here, "restarts/partner"));
+  std::printf("processor time of a message: %.3g us, after %d restarts %.3g us\n",
+              1e6 * cost_before_s, restarts, 1e6 * cost_of_a_message(writer));
 }
 
 TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
