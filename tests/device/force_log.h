@@ -20,6 +20,7 @@ class ForceLog {
     if (largest == 0.0 && newest_ > 0.0) zeros_nsec_.push_back(node::monotonic_nsec());
     ++frames_;
     largest_fall_ = std::max(largest_fall_, newest_ - largest);
+    largest_rise_ = std::max(largest_rise_, largest - newest_);
     newest_ = largest;
   }
 
@@ -39,6 +40,12 @@ class ForceLog {
     return std::exchange(largest_fall_, 0.0);
   }
 
+  /// The largest that its force rose by, likewise.
+  double take_largest_rise() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(largest_rise_, 0.0);
+  }
+
   /// When its force first went to 0 since then, CLOCK_MONOTONIC; 0: it has not.
   std::int64_t zero_since(std::int64_t time_nsec) const {
     const std::lock_guard lock(mutex_);
@@ -53,6 +60,7 @@ class ForceLog {
   double newest_ = 0.0;
   std::uint64_t frames_ = 0;
   double largest_fall_ = 0.0;
+  double largest_rise_ = 0.0;
   std::vector<std::int64_t> zeros_nsec_;
 };
 
