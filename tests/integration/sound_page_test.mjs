@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
 import { drawn, openPage, ownName, replied, textOf, viz } from '../viz/browser.mjs';
-import { need, out, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
+import { need, out, program, runCases, Session, source, until } from '../viz/session.mjs';
 
 const WebSocket = need('ws');
 
@@ -12,6 +12,7 @@ const [STEP_HZ, STIFFNESS, MASS, MASSES] = [44_100, 24_687, 5e-5, 100];
 const natural = 2 * Math.sqrt(STIFFNESS / MASS) * Math.sin(Math.PI / (2 * (MASSES + 1))); // [rad/s]
 const NOTE_HZ = (STEP_HZ / Math.PI) * Math.asin(natural / (2 * STEP_HZ));
 const QUIET_DB = -100;
+const GESTURE_S = 6.5; // a little more than `repeat_s` of the launch file
 const KEPT_S = 0.2; // sim_node keeps blocks of 0.25 s on their way
 const LATE_S = 0.025; // the buffer holds 60 ms; what is later than this may empty it
 const STALLED_S = 1; // no page plays sound that comes this late
@@ -82,7 +83,11 @@ const cases = {
   'sound comes to who asks for it, every block, and to no one else': async ({ url }) => {
     const listener = new Listener(url);
     await listener.opened;
-    await pause(500);
+    // Each block goes to all who asked before: what another one gets, this one would have got as well.
+    const other = new Listener(url);
+    await other.opened;
+    other.listen(true);
+    await until('20 blocks came to who asked', () => other.blocks.length >= 20);
     assert.equal(listener.blocks.length, 0);
     listener.listen(true);
     await until('100 blocks came', () => listener.blocks.length >= 100);
@@ -92,11 +97,12 @@ const cases = {
       const missing = block.firstStep - last.firstStep - last.steps;
       assert.ok(missing === 0 || (missing > 0 && listener.latestS > KEPT_S), `${missing} steps are missing`);
     }
-    await pause(300); // what was on its way
-    const count = listener.blocks.length;
-    await pause(500);
-    assert.equal(listener.blocks.length, count);
-    listener.socket.terminate();
+    await until('what was on its way has come, and no more does', async () => {
+      const [count, begin] = [listener.blocks.length, other.blocks.length];
+      await until('20 more came to who listens still', () => other.blocks.length >= begin + 20);
+      return listener.blocks.length === count;
+    });
+    for (const { socket } of [listener, other]) socket.terminate();
   },
 
   'a click plays the note of the string': async (session) => {
@@ -134,7 +140,8 @@ const cases = {
   },
 
   'no sound is lost but where the machine stopped': async ({ page, control }) => {
-    await pause(6500); // once through the gesture
+    const begin = control.blocks.at(-1).firstStep;
+    await until('the gesture was played once', () => control.blocks.at(-1).firstStep >= begin + GESTURE_S * STEP_HZ);
     const { dropouts, lostS, ratio, bufferS } = (await viz(page, 'sound')).figures;
     const lateS = Math.max(control.latestS, (await page.evaluate(() => window.latestMs)) / 1000);
     console.log(`  ${dropouts} dropouts, ${lostS} s lost, ${(1e6 * (ratio - 1)).toFixed(0)} ppm, buffer ${bufferS.toFixed(3)} s; the control was ${lateS.toFixed(3)} s late at worst`);

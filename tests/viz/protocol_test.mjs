@@ -5,7 +5,7 @@ import { readFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { connect } from 'node:net';
 import { hostname } from 'node:os';
-import { need, pause, runCases, Session, until } from './session.mjs';
+import { need, runCases, Session, until } from './session.mjs';
 
 const WebSocket = need('ws');
 
@@ -467,8 +467,8 @@ const cases = {
       assert.equal(await session.view.end('SIGINT'), 0);
     });
     session.view = session.viz();
-    await session.view.says(/page at (\S+)/);
-    await pause(200);
+    const url = await session.view.says(/page at (\S+)/);
+    await until('it serves the page', async () => (await ask(url, '/')).status === 200);
     assert.equal(await session.view.end('SIGTERM'), 0);
   },
 };
