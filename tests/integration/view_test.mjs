@@ -8,7 +8,7 @@ import { drawn, openPage, viz } from '../viz/browser.mjs';
 import { lot, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
 
 const DESCRIPTIONS = 50; // resets and loads
-const MOST_ROUNDS = 300;
+const MOST_ROUNDS = 100;
 const LAUNCH = join(source, 'launch_configs/plucked_string.yaml');
 const SCENES = ['membrane', 'hanging_chain', 'plucked_string'].map((name) => join(source, `launch_configs/scenes/${name}.yaml`));
 /** Controls that are not there in this session, by name, and which test presses them. */
@@ -20,7 +20,7 @@ const ELSEWHERE = {
 };
 
 /**
- * The controls of the page by name, and whether one of that name can be used now. What the page makes, as the sliders of
+ * The controls of the page by name, whether each can be used now, and whether it is off. What the page makes, as the sliders of
  * parameters, has the name of its kind. Runs in the page. @param press  name of one that is used first
  */
 function controls([fixedIds, press, chance]) {
@@ -47,10 +47,10 @@ function controls([fixedIds, press, chance]) {
     for (const type of ['input', 'change']) control.dispatchEvent(new Event(type, { bubbles: true }));
   };
   const isUsable = (control) => control.checkVisibility() && !control.disabled;
-  const all = [...document.querySelectorAll('button, input, select, textarea, summary, a[href], [role=button], [contenteditable]')];
-  const named = all.filter((control) => press !== undefined && nameOf(control) === press && isUsable(control));
+  const all = () => [...document.querySelectorAll('button, input, select, textarea, summary, a[href], [role=button], [contenteditable]')];
+  const named = all().filter((control) => press !== undefined && nameOf(control) === press && isUsable(control));
   if (named.length > 0) use(named[Math.floor(chance * named.length)]);
-  return all.map((control) => ({ name: nameOf(control), usable: isUsable(control) }));
+  return all().map((control) => ({ name: nameOf(control), usable: isUsable(control), off: control.ariaPressed === 'false' }));
 }
 
 /** Does something that describes the scene again, and waits until the page has the new description. */
@@ -114,9 +114,21 @@ class Person {
     const way = this.of(['reset', 'reset', 'list', 'list', 'shell']);
     if (way === 'reset') return this.use('#control button[data-verb="reset"]');
     if (way === 'list') return this.use('#scenes');
-    const file = this.of(SCENES);
+    return this.load(this.of(SCENES));
+  }
+
+  load(file) {
     this.log.push(`ctl load ${file}`);
     return describeAnew(this.page, `load ${file}`, () => load(this.session, file));
+  }
+
+  /** Shows all that buttons hide: signals to choose, one against another, parameters, a mass that is picked, and its way. */
+  async showAll() {
+    await this.load(SCENES[2]); // it has signals, keys and parameters
+    await this.pick();
+    await until('a mass is picked', () => this.page.locator('#picked').isVisible());
+    const off = (await this.controls()).filter((control) => control.off && control.usable);
+    for (const { name } of off) await this.use(name);
   }
 
   /** Picks a mass, so that its controls are shown: that of a key, or one in the view. */
@@ -161,15 +173,24 @@ const cases = {
     const html = await (await page.request.get(page.url())).text();
     const person = new Person(session, draw, [...html.matchAll(/ id="([^"]+)"/g)].map(([, id]) => id));
     let described = 0;
+    let allIsShown = false;
     let left = await person.left();
-    for (let round = 1; round <= MOST_ROUNDS && (described < DESCRIPTIONS || left.usable.length + left.hidden.length > 0); ++round) {
+    const isDone = () => described >= DESCRIPTIONS && left.usable.length + left.hidden.length === 0;
+    for (let round = 1; round <= MOST_ROUNDS && !(isDone() && allIsShown); ++round) {
       const begin = Date.now();
       person.log = [];
       await pause(draw() * 80); // anywhere between two frames
+      if (described >= DESCRIPTIONS && left.usable.length === 0) {
+        await person.showAll();
+        allIsShown = true;
+        left = await person.left();
+      }
       if (left.usable.length > 0) await person.use(person.of(left.usable));
-      if (described++ < DESCRIPTIONS) await person.describe();
-      const again = [...person.used].filter((name) => name !== '#scenes');
-      if (again.length > 0 && draw() < 0.5) await person.use(person.of(again));
+      if (described++ < DESCRIPTIONS) {
+        await person.describe();
+        const again = [...person.used].filter((name) => name !== '#scenes');
+        if (draw() < 0.5) await person.use(person.of(again));
+      }
       if (left.hidden.some((name) => name.startsWith('#picked'))) await person.pick();
       try {
         await goesOn(page);
