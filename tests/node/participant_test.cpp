@@ -1,5 +1,6 @@
 // tests/node/participant_test.cpp -- who is there, with processes that stop, die and come back.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -102,18 +103,25 @@ TEST(Participant, ForgetsAProcessThatIsKilledBeforeItsParentHasWaitedForIt) {
   EXPECT_EQ(killed->wait(kPatience), 128 + SIGKILL);
 }
 
-/// Processor time of this process for one message to those who listen [s]: the mean of many.
-double cost_of_a_message(Writer<msg::SceneEvents>& writer) {
-  constexpr int kMessages = 2000;
+double processor_time_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Processor time of this process for one message to those who listen [s], of two writers in turn:
+/// the least of some means, for other programs disturb both alike.
+std::array<double, 2> costs_of_a_message(std::array<Writer<msg::SceneEvents>*, 2> writers) {
+  constexpr int kRounds = 20;
+  constexpr int kMessages = 1000;
   msg::SceneEvents events;
-  timespec begin{};
-  timespec end{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &begin);
-  for (int n = 0; n < kMessages; ++n) EXPECT_TRUE(writer.write(events));
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
-  return (static_cast<double>(end.tv_sec - begin.tv_sec) +
-          1e-9 * static_cast<double>(end.tv_nsec - begin.tv_nsec)) /
-         kMessages;
+  std::array<double, 2> least_s{1.0, 1.0};
+  for (std::size_t round = 0; round < 2 * kRounds; ++round) {
+    const double begin_s = processor_time_s();
+    for (int n = 0; n < kMessages; ++n) EXPECT_TRUE(writers[round % 2]->write(events));
+    least_s[round % 2] = std::min(least_s[round % 2], (processor_time_s() - begin_s) / kMessages);
+  }
+  return least_s;
 }
 
 /// CORDIS_RESTARTS of the environment are done by hand, for the figure in docs/reliability.md.
@@ -128,7 +136,6 @@ TEST(Participant, KeepsNothingOfProcessesThatWereKilledAndStartedAgain) {
     return statuses.matched_count() == 1 && writer.matched_count() == 1 && here.peers().size() == 1;
   }));
   const std::size_t writers = here.writers().size();
-  const double cost_before_s = cost_of_a_message(writer);
 
   for (int n = 0; n < restarts; ++n) {
     const auto node = speaker("restarts", "node");
@@ -145,8 +152,13 @@ TEST(Participant, KeepsNothingOfProcessesThatWereKilledAndStartedAgain) {
   })) << here.peers().size()
       << " peers, " << here.writers().size() << " writers";
   EXPECT_TRUE(knows(here, "restarts/partner"));
-  std::printf("processor time of a message: %.3g us, after %d restarts %.3g us\n",
-              1e6 * cost_before_s, restarts, 1e6 * cost_of_a_message(writer));
+  Participant joined_now(member("restarts", "joined_now"));
+  Writer<msg::SceneEvents> writer_now(joined_now, Topic::kEvents);
+  ASSERT_TRUE(eventually([&] { return writer_now.matched_count() == 1; }));
+  const auto [cost_s, cost_now_s] = costs_of_a_message({&writer, &writer_now});
+  std::printf(
+      "processor time of a message after %d restarts: %.3g us, of one who joins now %.3g us\n",
+      restarts, 1e6 * cost_s, 1e6 * cost_now_s);
 }
 
 TEST(Participant, HearsAndIsHeardByAProcessThatItHasDropped) {
