@@ -244,7 +244,7 @@ class PressedKey {
     all_killed_nsec_ = node::monotonic_nsec();  // this thread may have been held up in between
   }
 
-  /// Judges that the board is given no force, and how soon. What this machine wakes timers late is
+  /// Checks that the board is given no force, and how soon. What this machine wakes timers late is
   /// no fault of a node.
   void expect_zero(const std::string& what) {
     EXPECT_TRUE(eventually([&] { return board_->log().newest() == 0.0; }))
@@ -286,7 +286,7 @@ class PressedKey {
   pid_t view_ = -1;
   pid_t recorder_ = -1;
   pid_t guardian_ = -1;
-  std::optional<CoreTimers> timers_;  // from a kill until the force is judged
+  std::optional<CoreTimers> timers_;  // from a kill until the force is checked
   std::int64_t killed_nsec_ = 0;
   std::int64_t all_killed_nsec_ = 0;
 };
