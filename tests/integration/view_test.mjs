@@ -8,7 +8,7 @@ import { drawn, openPage, viz } from '../viz/browser.mjs';
 import { lot, pause, program, runCases, Session, source, until } from '../viz/session.mjs';
 
 const DESCRIPTIONS = 50; // resets and loads
-const MOST_ROUNDS = 100;
+const MAX_ROUNDS = 100;
 const LAUNCH = join(source, 'launch_configs/plucked_string.yaml');
 const SCENES = ['membrane', 'hanging_chain', 'plucked_string'].map((name) => join(source, `launch_configs/scenes/${name}.yaml`));
 /** Controls that are not there in this session, by name, and which test presses them. */
@@ -176,7 +176,7 @@ const cases = {
     let allIsShown = false;
     let left = await person.left();
     const isDone = () => described >= DESCRIPTIONS && left.usable.length + left.hidden.length === 0;
-    for (let round = 1; round <= MOST_ROUNDS && !(isDone() && allIsShown); ++round) {
+    for (let round = 1; round <= MAX_ROUNDS && !(isDone() && allIsShown); ++round) {
       const begin = Date.now();
       person.log = [];
       await pause(draw() * 80); // anywhere between two frames
