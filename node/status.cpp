@@ -1,6 +1,7 @@
 // node/status.cpp
 #include "node/status.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -16,6 +17,7 @@ namespace cordis::node {
 namespace {
 
 constexpr auto kPeriod = std::chrono::milliseconds(500);
+constexpr auto kWatchPeriod = std::chrono::milliseconds(40);
 // So long it may take until those who look on have found a node.
 constexpr auto kFound = std::chrono::milliseconds(500);
 
@@ -41,10 +43,11 @@ double resident_bytes() {
 }  // namespace
 
 StatusPublisher::StatusPublisher(dds::Participant& participant, msg::NodeKind kind,
-                                 std::uint64_t epoch, Fill fill)
+                                 std::uint64_t epoch, Fill fill, Watch watch)
     : participant_(participant),
       writer_(participant, dds::Topic::kStatus),
       fill_(std::move(fill)),
+      watch_(std::move(watch)),
       begun_(std::chrono::steady_clock::now()),
       rate_(monotonic_nsec()) {
   const std::string& name = participant.config().node;
@@ -72,9 +75,20 @@ void StatusPublisher::publish_now() noexcept {
 void StatusPublisher::loop() {
   while (!ending_) {
     publish();
-    if (!wake_.try_acquire_for(kPeriod)) continue;
+    if (!wait_until(std::chrono::steady_clock::now() + kPeriod)) continue;
     while (wake_.try_acquire()) {
     }
+  }
+}
+
+/// Watches until then. @return true if it was woken before
+bool StatusPublisher::wait_until(std::chrono::steady_clock::time_point next) {
+  if (!watch_) return wake_.try_acquire_until(next);
+  while (true) {
+    const auto watch = std::chrono::steady_clock::now() + kWatchPeriod;
+    if (wake_.try_acquire_until(std::min(watch, next))) return true;
+    if (watch >= next) return false;
+    watch_();
   }
 }
 

@@ -25,8 +25,11 @@ class StatusPublisher {
   /// the mean rate (from `ticks`) are filled in already.
   using Fill = std::function<void(msg::NodeStatus&)>;
 
-  StatusPublisher(dds::Participant& participant, msg::NodeKind kind, std::uint64_t epoch,
-                  Fill fill);
+  /// What the publisher's thread does 25 times a second, between two messages; must not block.
+  using Watch = std::function<void()>;
+
+  StatusPublisher(dds::Participant& participant, msg::NodeKind kind, std::uint64_t epoch, Fill fill,
+                  Watch watch = nullptr);
 
   /// Publishes the last status, not before others can have found this node, and waits a moment
   /// until it has arrived: 0.8 s after a run of no time at worst.
@@ -41,6 +44,7 @@ class StatusPublisher {
 
  private:
   void loop();
+  bool wait_until(std::chrono::steady_clock::time_point next);
   void publish();
   void report_mismatch();
   void report_rejoin();
@@ -52,6 +56,7 @@ class StatusPublisher {
   std::uint64_t rejoin_count_ = 0;  // reported
   dds::Writer<msg::NodeStatus> writer_;
   Fill fill_;
+  Watch watch_;
   msg::NodeStatus status_;
   std::chrono::steady_clock::time_point begun_;
   TickRate rate_;

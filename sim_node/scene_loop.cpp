@@ -38,7 +38,8 @@ SceneLoop::SceneLoop(const node::NodeStart& start, std::unique_ptr<LoadedScene> 
       status_(status),
       participant_(participant) {
   if (is_forced_) simulation().keep_devices();
-  status_.change_shadow(runner_.loaded_scene().shadow);
+  const LoadedScene& loaded = runner_.loaded_scene();
+  status_.change_shadow(loaded.shadow, loaded.watches_energy());
 }
 
 void SceneLoop::wait_for_signal_reader(const std::string& node) {

@@ -41,12 +41,14 @@ Session::Session(const node::NodeStart& start, SimConfig config)
                 std::make_shared<const scene::Scene>(std::move(config.scene)), start.epoch, 1),
             std::move(config.source), config.duration_s, config.force, participant_, devices_,
             snapshot_),
-      status_(participant_, msg::KIND_SIM_NODE, start.epoch,
-              [this](msg::NodeStatus& status) {
-                snapshot_.fill(status, devices_.refusal(), devices_.loops());
-                report_time_scale(status, loop_.time_scale());
-                status.lost_events(loop_.lost_events());
-              }),
+      status_(
+          participant_, msg::KIND_SIM_NODE, start.epoch,
+          [this](msg::NodeStatus& status) {
+            snapshot_.fill(status, devices_.refusal(), devices_.loops());
+            report_time_scale(status, loop_.time_scale());
+            status.lost_events(loop_.lost_events());
+          },
+          [this] { snapshot_.watch(); }),
       control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {}
 
 /// Before anything else needs the cores.

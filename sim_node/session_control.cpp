@@ -87,7 +87,8 @@ node::Answer SessionControl::execute(msg::ControlVerb verb,
   node::Answer answer = command();
   if (verb == msg::VERB_LOAD && answer.accepted) status_.publish_now();
   if (executor_.scene() != before) devices_.play(*executor_.scene());
-  snapshot_.change_shadow(loop_.runner().loaded_scene().shadow);
+  const LoadedScene& loaded = loop_.runner().loaded_scene();
+  snapshot_.change_shadow(loaded.shadow, loaded.watches_energy());
   return answer;
 }
 

@@ -98,9 +98,19 @@ void StatusSnapshot::change_scene(const scene::Scene& scene, std::uint64_t versi
   liaisons_version_ = version;
 }
 
-void StatusSnapshot::change_shadow(std::shared_ptr<ShadowWorld> shadow) {
+void StatusSnapshot::change_shadow(std::shared_ptr<ShadowWorld> shadow, bool watches_energy) {
   const std::lock_guard lock(shadow_mutex_);
   shadow_ = std::move(shadow);
+  watches_energy_ = watches_energy;
+}
+
+void StatusSnapshot::watch() {
+  if (clock_ != config::Clock::kRealtime) return;
+  {
+    const std::lock_guard lock(shadow_mutex_);
+    if (!watches_energy_) return;
+  }
+  read_shadow();
 }
 
 /// Real time: the status thread finds energy and state hash, of a copy of the world.

@@ -46,11 +46,14 @@ class StatusSnapshot {
   void change_scene(const scene::Scene& scene, std::uint64_t version);
   /// Thread of commands: the world whose energy the status thread looks at. The loop exchanges
   /// scenes only while a command waits for it.
-  void change_shadow(std::shared_ptr<ShadowWorld> shadow);
+  /// @param watches_energy  the status thread looks at it in each frame
+  void change_shadow(std::shared_ptr<ShadowWorld> shadow, bool watches_energy);
 
   /// Status thread. @param refusal  why devices are refused; empty when none is
   /// @param loops  how late the devices are answered, shown when nothing is wrong
   void fill(msg::NodeStatus& status, const std::string& refusal, const std::string& loops);
+  /// Status thread, 25 times a second: in real time the energy of a scene that needs it.
+  void watch();
 
  private:
   struct Figures {
@@ -78,7 +81,8 @@ class StatusSnapshot {
   bool is_looping_ = false;  // the loop's
   std::mutex shadow_mutex_;  // of the threads of commands and of the status
   std::shared_ptr<ShadowWorld> shadow_;
-  std::mutex mutex_;  // of the next three
+  bool watches_energy_ = false;  // likewise
+  std::mutex mutex_;             // of the next three
   Figures figures_;
   std::vector<std::string> liaisons_;  // names of those whose changes are published
   std::uint64_t liaisons_version_ = 0;

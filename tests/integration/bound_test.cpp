@@ -14,9 +14,11 @@
 namespace cordis::test {
 namespace {
 
-/// A session in lockstep with a key; it ends when the launcher is interrupted.
+/// A session with a key; it ends when the launcher is interrupted.
 class Bound : public testing::Test {
  protected:
+  explicit Bound(const std::string& clock = "lockstep") : session_(clock, kSimAndKey) {}
+
   void play(const char* scene, const std::string& key = steady_key(-0.01, 0.0)) {
     session_.add_file("scene.yaml", scene);
     session_.add_file("key.yaml", key);
@@ -47,7 +49,7 @@ class Bound : public testing::Test {
     return launcher_->output();
   }
 
-  LiveSession session_{"lockstep", kSimAndKey};
+  LiveSession session_;
   StatusWatch status_{session_.participant()};
 
  private:
@@ -119,6 +121,22 @@ TEST_F(Bound, StepsThatMakeEnergyLetGoOfTheDevicesAndSayWhy) {
   EXPECT_EQ(status_.of("sim").text(), reason);
   expect_zero_forces(1);
   end();
+}
+
+class BoundInRealTime : public Bound {
+ protected:
+  BoundInRealTime() : Bound("realtime") {}
+};
+
+TEST_F(BoundInRealTime, StepsThatMakeEnergyLetGoOfTheDevicesAndSayWhy) {
+  play(kBouncing);
+
+  const std::string reason =
+      "has let go of the devices: the steps have made more than a tenth of the largest energy";
+  ASSERT_NO_FATAL_FAILURE(expect_let_go(reason));
+  expect_zero_forces(20);
+  const std::string output = end();
+  EXPECT_NE(output.find("sim: " + reason), std::string::npos) << output;
 }
 
 /// A ball between a wall and a paddle, which stiffen as they are pressed in: certified for the energy

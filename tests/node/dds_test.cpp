@@ -633,6 +633,22 @@ TEST(StatusPublisher, ReportsItsNodeAtOnceRegularlyAndOnceMoreAtTheEnd) {
       eventually([&] { return reader.take(status) && status.phase() == msg::PHASE_STOPPED; }));
 }
 
+TEST(StatusPublisher, WatchesBetweenTwoMessages) {
+  Participant viewer(member("status watch", "view"));
+  Reader<msg::NodeStatus> reader(viewer, Topic::kStatus);
+  Participant sim(member("status watch", "sim"));
+  std::atomic<std::uint64_t> watches = 0;
+  const node::StatusPublisher publisher(
+      sim, msg::KIND_SIM_NODE, 77, [&](msg::NodeStatus& status) { status.ticks(watches.load()); },
+      [&] { ++watches; });
+
+  // Some come before each message, and messages still come.
+  msg::NodeStatus status;
+  ASSERT_TRUE(eventually([&] { return reader.take(status) && status.ticks() > 2; }));
+  const std::uint64_t seen = status.ticks();
+  ASSERT_TRUE(eventually([&] { return reader.take(status) && status.ticks() > seen; }));
+}
+
 TEST(Dds, SaysThatAProcessWasStartedWithAnotherLaunchFile) {
   ParticipantConfig with_standbys = member("mismatch", "sim");
   with_standbys.standbys = true;
