@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sim_node/run/bound_text.h"
 #include "tests/sim/loaded_scenes.h"
 
 namespace cordis::sim {
@@ -31,6 +32,11 @@ links:
   - {liaison: rope, between: [hook, bob]}
 )";
 }
+
+/// A key that moves nothing of it.
+const char* const kKey = R"(ports:
+  key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: 1}
+)";
 
 TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
   const auto loaded = loaded_scene_of(snatch_text("20000"));
@@ -60,6 +66,39 @@ links:
   loaded->limits.update(loaded->simulation.world());
   const double one = 3000.0 * 1e-6 + 2.0 * 1e-3;                        // K dt^2 + 2 Z dt
   EXPECT_NEAR(loaded->limits.largest(), 2.0 * 2.0 * one / 0.1, 1e-12);  // one on each side
+}
+
+TEST(LimitWatch, LetsGoWhereTheNumberComesToFour) {
+  // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
+  for (const bool has_key : {false, true}) {
+    const auto loaded = loaded_scene_of(snatch_text("410000") + (has_key ? kKey : ""));
+    Simulation& simulation = loaded->simulation;
+    EXPECT_FALSE(loaded->is_certain);
+    EXPECT_TRUE(loaded->watches_number);
+    EventRoom events(1);
+    while (simulation.world().state_of(0) == 0u) {
+      EXPECT_EQ(loaded->passed_bound({}), PassedBound::kNone);
+      ASSERT_TRUE(simulation.advance(1, events));
+    }
+
+    const PassedBound bound = loaded->passed_bound({});
+    EXPECT_EQ(bound, PassedBound::kNumber);
+    EXPECT_NEAR(loaded->limits.largest(), 4.1, 1e-9);
+    simulation.let_devices_go(bound);
+    EXPECT_EQ(bound_text(*loaded),
+              std::string(has_key ? "has let go of the devices: " : "") +
+                  "K' + 2 Z' came to 4, from where on the scene may be unstable");
+  }
+}
+
+TEST(LimitWatch, LeavesASceneAloneWhoseNumberStaysBelowFour) {
+  const auto loaded = loaded_scene_of(snatch_text("390000"));  // K dt^2 / m = 3.9
+  EventRoom events(1);
+  for (int tick = 0; tick < 100; ++tick) {
+    ASSERT_TRUE(loaded->simulation.advance(1, events));
+    EXPECT_EQ(loaded->passed_bound({}), PassedBound::kNone);
+  }
+  EXPECT_EQ(loaded->simulation.world().state_of(0), 1u);
 }
 
 TEST(LimitWatch, StaysBelowFourWhereTheStepIsCertified) {
