@@ -121,18 +121,17 @@ std::string stability_text(const SceneCheck& check) {
     text = unstable_text(check);
   } else if (stability.uncertainty) {
     text = fmt::format(
-        "stability   not certain: {};\n            energy and K' + 2 Z' are watched during "
-        "the run{}\n",
-        sim::uncertainty_text(check.scene, *stability.uncertainty),
+        "stability   not certain: {};\n            {}{}\n",
+        sim::uncertainty_text(check.scene, *stability.uncertainty), sim::kWatchedText,
         is_any_certain && sim::rate_above(check.scene, 1.0 / certain) <= scene::kHighestStepRate
             ? fmt::format("; a rate_hz of {:.0f} is certain",
                           sim::rate_above(check.scene, 1.0 / certain))
             : "");
   } else {
     text = fmt::format(
-        "stability   not certain: stable in some poses or states alone; a rate_hz of {:.0f} is "
-        "stable in all{}\n",
-        sim::rate_above(check.scene, 1.0 / stability.certified.step),
+        "stability   not certain: the scene may be unstable in some poses or states;\n"
+        "            {}; a rate_hz of {:.0f} is stable in all{}\n",
+        sim::kWatchedText, sim::rate_above(check.scene, 1.0 / stability.certified.step),
         stability.turning.liaison ? " in which no link turns about" : "");
   }
   text += fmt::format("            step {}", seconds(stability.step));

@@ -85,7 +85,7 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
                      "at " + std::to_string(rate) +
                          " Hz it is not certain that the scene is stable: " +
                          uncertainty_text(scene, *stability.uncertainty),
-                     "energy and K' + 2 Z' are watched during the run");
+                     kWatchedText);
     return;
   }
   const plan::StepBound& bound = stability.certified;
@@ -99,7 +99,7 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
     problems.warning(place,
                      "at " + std::to_string(rate) +
                          " Hz the scene may be unstable in some poses or states: " + limit,
-                     hint);
+                     hint + "; " + kWatchedText);
   } else if (force) {
     problems.warning(place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
                      hint);

@@ -10,6 +10,9 @@
 
 namespace cordis::sim {
 
+/// What a run watches of a scene whose step is not certified.
+inline constexpr const char* kWatchedText = "energy and K' + 2 Z' are watched during the run";
+
 /// Holds the step of a scene against its limits: an error where it surely diverges, unless forced
 /// (then a warning); a warning where it is not certified in every pose and state. The place is that
 /// of the liaison that sets the limit. `cordis check` says more.

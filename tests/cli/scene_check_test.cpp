@@ -161,6 +161,31 @@ TEST_F(Checked, ASceneMayAskForAccuracyInsteadOfARate) {
   EXPECT_NE(error_.find("band_hz"), std::string::npos) << error_;
 }
 
+TEST_F(Checked, WhereNothingSwingsTheCreepAsksForTheRate) {
+  // s = w^2 / (r + sqrt(r^2 - w^2)) = 10.06 / s at w = 40 pi, r = Z / 2 m = 789.5 / s. A step of
+  // `implicit` makes e^(-s dt) to 1 / (1 + s dt): the creep is off by -s dt / 2.
+  std::ofstream(path_) << R"(cordis: 1
+name: closer
+space: 1
+step: {integrator: implicit, gesture_rate_hz: 10}
+accuracy: {tolerance: 0.005, band_hz: 20}
+matter:
+  ground: {kind: fixed, at_m: 0}
+  door: {kind: mass, mass_kg: 0.1, at_m: 0.1}
+liaisons:
+  closer: {kind: spring_damper, stiffness_n_per_m: 1579, viscosity_n_s_per_m: 157.9, rest_m: 0}
+links:
+  - {liaison: closer, between: [ground, door]}
+)";
+  EXPECT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("would do: because of the creep at the end of the band"), std::string::npos)
+      << out_;
+  EXPECT_NE(
+      out_.find("accuracy    at 20 Hz the viscosity lets nothing swing: creep -0.5 % at most"),
+      std::string::npos)
+      << out_;
+}
+
 TEST_F(Checked, AProgramReadsTheSame) {
   write("100");
   ASSERT_EQ(run({"--json", "-", "--band", "2"}), kSuccess) << error_;
@@ -247,6 +272,36 @@ links:
   EXPECT_NE(out_.find("not certain: gravitation"), std::string::npos) << out_;
   EXPECT_EQ(out_.find("certified"), std::string::npos) << out_;
   EXPECT_EQ(out_.find("no step is too long"), std::string::npos) << out_;
+}
+
+TEST_F(Checked, BetweenTheTwoLimitsItSaysWhatTheRunWatches) {
+  // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
+  std::ofstream(path_) << R"(cordis: 1
+name: snatch
+space: 1
+step: {rate_hz: 1000}
+liaisons:
+  rope:
+    states:
+      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}
+      taut: {stiffness_n_per_m: 410000, final: true}
+matter:
+  hook: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}
+links:
+  - {liaison: rope, between: [hook, bob]}
+)";
+  ASSERT_EQ(run({}), kSuccess) << error_;
+  EXPECT_NE(out_.find("not certain: the scene may be unstable in some poses or states;\n"
+                      "            energy and K' + 2 Z' are watched during the run; a rate_hz of "
+                      "2000 is stable in all\n"),
+            std::string::npos)
+      << out_;
+  EXPECT_NE(error_.find("warning: at 1000 Hz the scene may be unstable in some poses or states: "),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(error_.find("; energy and K' + 2 Z' are watched during the run"), std::string::npos)
+      << error_;
 }
 
 TEST_F(Checked, WhatNothingBoundsIsNamedWithItsPlace) {
