@@ -132,6 +132,25 @@ TEST_F(Lab, GoesOnWhereItWasAndBeginsAnewForAnotherScene) {
   EXPECT_EQ(run().kept_runs, 0);
 }
 
+TEST_F(Lab, BeginsAnewForAnotherExpression) {
+  const auto write_law = [this](const std::string& elasticity) {
+    write("");
+    std::ifstream in(options_.file);
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::string spring = "{kind: spring, stiffness_n_per_m: 1000, rest_m: 0}";
+    text.replace(text.find(spring), spring.size(), "{elasticity: '" + elasticity + "', rest_m: 0}");
+    std::ofstream(options_.file) << text;
+  };
+  write_law("1000 * elongation_m + 10 * elongation_m^3");
+  const LabReport first = run();
+  EXPECT_GT(first.runs.size(), 5u);
+  EXPECT_EQ(run().kept_runs, static_cast<int>(first.runs.size()));
+  write_law("1000 * elongation_m + 20 * elongation_m^3");
+  EXPECT_EQ(run().kept_runs, 0);
+  write_law("1000 * elongation_m + 20 * elongation_m^5");
+  EXPECT_EQ(run().kept_runs, 0);
+}
+
 TEST_F(Lab, WritesATableAndAScriptForItsChart) {
   const LabReport report = run();
   draw_chart(report, options_.folder);
