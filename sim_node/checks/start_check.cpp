@@ -62,14 +62,34 @@ void warn_of(const scene::Scene& scene, const Overlap& worst, const engine::Lenn
                    "start them at least a diameter apart");
 }
 
+/// A pair has a direction only where its members are apart, in 1-D too.
+void check_coincidence(const scene::Scene& scene, const plan::StartPairs& near,
+                       const engine::SetLiaison& set, engine::LiaisonId liaison,
+                       config::Problems& problems) {
+  if (!near.at_one_point()) return;
+  const std::uint32_t mat_a = plan::mat_of(set, near.at_one_point()->member_a);
+  const std::uint32_t mat_b = plan::mat_of(set, near.at_one_point()->member_b);
+  if (plan::rest_length_of(scene.network, set, mat_a, mat_b) == 0.0) return;
+  const scene::Called called = scene::call_liaison(scene, liaison);
+  problems.warning(called.place,
+                   scene::call_mat(scene, mat_a).name + " and " +
+                       scene::call_mat(scene, mat_b).name + " start at the same point, so " +
+                       called.name +
+                       " has no direction between them and exerts no force, although its rest "
+                       "length is not 0",
+                   "move one of them a little to the side on which it shall be");
+}
+
 void check_overlaps(const scene::Scene& scene, config::Problems& problems) {
   const NetworkDescription& network = scene.network;
   for (std::uint32_t s = 0; s < network.sets.size(); ++s) {
     const engine::SetLiaison& set = network.sets[s];
     const auto* law = law_at_start(network.state_machines[set.state_machine]);
+    if (law == nullptr && set.rest_length == 0.0) continue;
+    const plan::StartPairs near(network, set);
+    check_coincidence(scene, near, set, {engine::LiaisonKind::kSet, s}, problems);
     if (law == nullptr) continue;
     Overlap worst;
-    const plan::StartPairs near(network, set);
     for (const plan::StartPair& pair : near.pairs()) {
       consider(network, *law, plan::mat_of(set, pair.member_a), plan::mat_of(set, pair.member_b),
                pair.distance, worst);

@@ -48,6 +48,35 @@ TEST(StartCheck, WarnsOfLennardJonesBallsThatTheFirstStepThrowsApart) {
   }
 }
 
+TEST(StartCheck, WarnsOfMembersOfASetThatStartAtOnePointUnderARestLength) {
+  const auto warnings = [](int space, const std::string& rest, bool is_fixed) {
+    const std::string places = space == 1 ? "[0, 0.01, 0.01]" : "[[0, 0], [0.01, 0], [0.01, 0]]";
+    return warnings_of("cordis: 1\nspace: " + std::to_string(space) + R"(
+step: {rate_hz: 1000}
+liaisons:
+  touch: {stiffness_n_per_m: 1, pulls: false}
+matter:
+  row: {kind: )" + (is_fixed ? "fixed" : "mass, ball: {mass_kg: 0.001, radius_m: 0.004}") +
+                       ", at_m: " + places + R"(}
+links:
+  - {liaison: touch, within: row, name: hold, range_m: 0.005, )" +
+                       rest + "}\n");
+  };
+  for (const int space : {1, 2}) {
+    for (const char* const rest : {"rest: radii", "rest_m: 0.003"}) {
+      const std::string text = warnings(space, rest, false);
+      EXPECT_NE(text.find("t:9:"), std::string::npos) << text;
+      EXPECT_NE(
+          text.find("warning: row[1] and row[2] start at the same point, so hold of sets has no "
+                    "direction between them and exerts no force"),
+          std::string::npos)
+          << text;
+      EXPECT_NE(text.find("move one of them a little"), std::string::npos) << text;
+    }
+    EXPECT_EQ(warnings(space, "rest_m: 0", false), "");
+  }
+}
+
 std::string falling(const std::string& place, const std::string& step) {
   return R"(cordis: 1
 space: 2

@@ -114,7 +114,7 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
       start.across =
           std::max(start.across, stiffness_across_at(state_machine, network.dimension, point));
   }
-  if (near.any_at_one_point()) start.uncertainty = starts_at_one_point(state_machine, {});
+  if (near.at_one_point()) start.uncertainty = starts_at_one_point(state_machine, {});
   const auto& law = state_machine.states[state_machine.start].elasticity;
   const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
   start.fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);

@@ -95,9 +95,9 @@ StartPairs::StartPairs(const engine::NetworkDescription& network, const engine::
           (network.mats[mat_of(set, second)].position - network.mats[mat_of(set, first)].position)
               .norm();
       if (distance > 0.0 && distance < set.range) pairs_.push_back({first, second, distance});
-      any_at_one_point_ =
-          any_at_one_point_ || (distance == 0.0 && mat_of(set, first) != mat_of(set, second) &&
-                                any_moves(network, mat_of(set, first), mat_of(set, second)));
+      if (!at_one_point_ && distance == 0.0 && mat_of(set, first) != mat_of(set, second) &&
+          any_moves(network, mat_of(set, first), mat_of(set, second)))
+        at_one_point_ = StartPair{first, second, distance};
     }
   }
 }

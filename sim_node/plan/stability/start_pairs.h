@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "sim_node/engine/description/network.h"
@@ -13,7 +14,7 @@ namespace cordis::plan {
 struct StartPair {
   std::uint32_t member_a;
   std::uint32_t member_b;
-  double distance;  ///< [m], > 0 but of a surface, where it may be below
+  double distance;  ///< [m], > 0 but of a surface, where it may be below, and of at_one_point()
 };
 
 /// The pairs of a set nearer than its range at the start, by the engine's neighbour search: O(members
@@ -27,8 +28,8 @@ class StartPairs {
 
   bool are_kept() const noexcept { return kept_; }
   const std::vector<StartPair>& pairs() const noexcept { return pairs_; }  ///< none unless kept
-  /// True if two members, not both fixed, are at one point: no pair, for it exerts no force.
-  bool any_at_one_point() const noexcept { return any_at_one_point_; }
+  /// Two members, not both fixed, that are at one point: no pair, for it exerts no force. Its first two.
+  const std::optional<StartPair>& at_one_point() const noexcept { return at_one_point_; }
   /// By member: how many others are in range.
   const std::vector<std::uint32_t>& counts() const noexcept { return counts_; }
 
@@ -38,7 +39,7 @@ class StartPairs {
   std::vector<StartPair> pairs_;
   std::vector<std::uint32_t> counts_;
   bool kept_ = true;
-  bool any_at_one_point_ = false;
+  std::optional<StartPair> at_one_point_;
 };
 
 /// Rest length of a pair of a set [m].
