@@ -8,6 +8,7 @@
 
 #include "idl/scene.h"
 #include "node/config/count_text.h"
+#include "node/step_troubles.h"
 
 namespace cordis::cli {
 namespace {
@@ -107,9 +108,9 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
     const auto report = [&text](std::uint64_t count, const char* what) {
       if (count > 0) text += fmt::format("{}: {}\n", what, count);
     };
-    report(status.overflowed_steps(), "steps with more pairs in range than room, slow");
-    report(status.forgotten_pairs(), "states of pairs FORGOTTEN for lack of memory");
-    report(status.refused_inputs(), "positions and forces refused, not finite");
+    report(status.overflowed_steps(), node::kOverflowedSteps);
+    report(status.forgotten_pairs(), node::kForgottenPairs);
+    report(status.refused_inputs(), node::kRefusedInputs);
     text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
                         config::count_text(status.step(), "step"));
   }

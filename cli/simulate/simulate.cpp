@@ -143,6 +143,9 @@ class Recording {
         {"failure", result.failure},
         {"passed_bound", result.bound},
         {"driven", result.drives},
+        {"overflowed_steps", result.troubles.overflowed_steps},
+        {"forgotten_pairs", result.troubles.forgotten_pairs},
+        {"refused_inputs", result.troubles.refused_inputs},
         {"settled", result.settled},
         {"threads", result.threads},
         {"wall_s", result.wall_s},
@@ -201,7 +204,8 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   }
   result.failure = session.simulation().failure();
   result.bound = session.bound_text();
-  result.drives = drive_trouble_text(session.simulation().troubles());
+  result.troubles = session.simulation().troubles();
+  result.drives = drive_trouble_text(result.troubles);
   result.integration_error = session.integration_error_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
   result.simulated_s = session.time_s() - session.start_s();

@@ -53,6 +53,8 @@ int run(const SimulateOptions& options) {
   for (const std::string* text : {&result.bound, &result.integration_error, &result.drives}) {
     if (!text->empty()) std::fprintf(stderr, "warning: %s\n", text->c_str());
   }
+  for (const std::string& text : sim::step_trouble_texts(result.troubles))
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
   const bool is_piped = options.csv_file == "-" || options.events_file == "-" ||
                         options.summary_file == "-" || options.state_file == "-";
   node::print_text(is_piped ? stderr : stdout, report_of(result));

@@ -10,6 +10,7 @@
 
 #include "node/assert.h"
 #include "node/config/count_text.h"
+#include "node/step_troubles.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/scene/naming.h"
 
@@ -59,6 +60,17 @@ std::string drive_trouble_text(const StepTroubles& troubles) {
             " of 'driven' were no finite numbers: a position stayed, a force was 0";
   }
   return text;
+}
+
+std::vector<std::string> step_trouble_texts(const StepTroubles& troubles) {
+  std::vector<std::string> texts;
+  const auto add = [&texts](std::uint64_t count, const std::string& what) {
+    if (count > 0) texts.push_back(what + ": " + std::to_string(count));
+  };
+  add(troubles.overflowed_steps, node::kOverflowedSteps);
+  add(troubles.forgotten_pairs, node::kForgottenPairs);
+  add(troubles.refused_inputs, node::kRefusedInputs);
+  return texts;
 }
 
 Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch)

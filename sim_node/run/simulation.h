@@ -30,6 +30,9 @@ struct StepTroubles {
 /// What the drives of a scene have done wrong, for a person; empty when nothing.
 std::string drive_trouble_text(const StepTroubles& troubles);
 
+/// What else went wrong in the steps, each with its number, for a person; none when nothing.
+std::vector<std::string> step_trouble_texts(const StepTroubles& troubles);
+
 /// What a scene has passed beyond which its step is not certain to be stable.
 enum class PassedBound : std::uint8_t { kNone, kPartners, kNumber, kEnergy };
 

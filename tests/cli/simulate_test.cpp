@@ -304,6 +304,30 @@ TEST_F(Simulate, SaysWhyTheDevicesWereLetGoOf) {
   EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["passed_bound"], "");
 }
 
+TEST_F(Simulate, CountsWhatTheStepsRefuseAndHaveNoRoomFor) {
+  // no number from 0.1 s on: 400 of 800 steps
+  const std::string scene = put("rooted.yaml", R"(cordis: 1
+name: rooted
+space: 1
+step: {rate_hz: 4000}
+matter:
+  free: {kind: mass, mass_kg: 1, at_m: 1}
+  led: {kind: fixed, at_m: 0, driven: {displacement_m: 'sqrt(1 - time_s / 0.100125) - 1'}}
+)");
+  ASSERT_EQ(run({scene, "--duration", "0.2s", "--summary", path("s.json")}), kSuccess) << error_;
+  const auto after = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_EQ(after["refused_inputs"], 400);
+  EXPECT_EQ(after["overflowed_steps"], 0);
+  EXPECT_EQ(after["forgotten_pairs"], 0);
+  EXPECT_THAT(error_, HasSubstr("warning: positions and forces refused, not finite: 400\n"));
+  EXPECT_THAT(error_, testing::Not(HasSubstr("more pairs in range than room")));
+
+  const std::string falling = put("fall.yaml", kFalling);
+  ASSERT_EQ(run({falling, "--duration", "0.2s", "--summary", path("f.json")}), kSuccess) << error_;
+  EXPECT_EQ(error_, "");
+  EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["refused_inputs"], 0);
+}
+
 TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {
   const std::string scene = put("bouncing.yaml", kBouncing);
   ASSERT_EQ(run({scene, "--duration", "60s", "--summary", path("s.json")}), kSuccess) << error_;
