@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/rate_trial.h"
@@ -63,6 +65,21 @@ TEST(FormulaRate, ContactsKeepTheirEnergy) {
   EXPECT_EQ(choice.reason, RateReason::kContact);
   // K' = 4 * 0.01 / 1.01 at 1e6 dt^2
   EXPECT_NEAR(choice.needed_hz, 1e3 / std::sqrt(0.04 / 1.01), 1.0);
+}
+
+TEST(FormulaRate, WhereNothingSwingsTheCreepAsksForMore) {
+  // `implicit` makes e^(-s dt) to 1 / (1 + s dt)
+  const double w = 2.0 * M_PI * 20.0;
+  const double rate = 0.05 * w * w;  // Z / 2 m
+  const double slow = w * w / (rate + std::sqrt(rate * rate - w * w));
+  NetworkDescription scene = oscillator(0.1, 0.1 * w * w, 0.1 * 2.0 * rate, 1.0, 0.0, 1.0);
+  scene.integrator = engine::IntegratorKind::kImplicit;
+  const FormulaRate choice = rate_by_formula(scene, AccuracyTarget{0.01, 20.0, 0.1}, 10.0);
+
+  EXPECT_EQ(choice.reason, RateReason::kCreep);
+  EXPECT_STREQ(to_string(choice.reason), "the creep at the end of the band");
+  const double phase = slow / choice.needed_hz;
+  EXPECT_NEAR(std::log1p(phase) / phase, 1.0 - 0.01, 1e-6);
 }
 
 TEST(FormulaRate, StaysBelowTheLimit) {
@@ -167,6 +184,72 @@ TEST(RateSelection, TriesNothingOutWhoseStabilityIsNotCertain) {
   EXPECT_LT(selection.error, 0.0);
   EXPECT_NE(selection.uncertainty.find("not certain that the scene is stable"), std::string::npos)
       << selection.uncertainty;
+}
+
+/// A network that creeps, and where its last mass is after 0.5 s.
+struct Creep {
+  NetworkDescription scene;
+  double exact;  // [m]
+  double start;  // [m]
+};
+
+/// A mass on a spring, beside it a spring and a damper in a row, with a light mass between: of these the
+/// matrix exponential.
+Creep three_mats() {
+  NetworkDescription scene = oscillator(0.5, 80.0, 0.0, 0.05, 0.0, 1e-3);
+  scene.mats = {fixed(Vec3::Zero()), mass(1e-4, Vec3(0.05, 0, 0)), mass(0.5, Vec3(0.05, 0, 0))};
+  scene.links = {{0, 2, 80.0, 0.0, 0.0}, {0, 1, 240.0, 0.0, 0.0}, {1, 2, 0.0, 6.0, 0.0}};
+  Eigen::Matrix4d system;                         // of node and mass, then of their velocities
+  system << 0, 0, 1, 0,                           //
+      0, 0, 0, 1,                                 //
+      -240.0 / 1e-4, 0, -6.0 / 1e-4, 6.0 / 1e-4,  //
+      0, -80.0 / 0.5, 6.0 / 0.5, -6.0 / 0.5;
+  const Eigen::Matrix4d propagator = (0.5 * system).exp();
+  return {scene, (propagator * Eigen::Vector4d(0.05, 0.05, 0, 0))[1], 0.05};
+}
+
+/// A ball of 1 mg that falls in honey: it has its speed m g / Z after m / Z = 50 us.
+Creep honey() {
+  NetworkDescription scene = oscillator(1e-6, 0.0, 0.0, 0.0, 0.0, 1e-3);
+  scene.links.clear();
+  scene.gravity = Vec3(-10, 0, 0);
+  scene.medium_viscosity = 0.02;
+  const double time = 1e-6 / 0.02;
+  return {scene, -10.0 * time * (0.5 - time), 0.0};
+}
+
+/// A door of 2 g: x = x0 (b e^(-a t) - a e^(-b t)) / (b - a) with the two rates a and b.
+Creep door() {
+  const NetworkDescription scene = oscillator(0.002, 100.0, 50.0, 0.1, 0.0, 1e-3);
+  const double half = 0.5 * 50.0 / 0.002;
+  const double square = 100.0 / 0.002;
+  const double fast = half + std::sqrt(half * half - square);
+  const double slow = square / fast;
+  const double left = (fast * std::exp(-slow * 0.5) - slow * std::exp(-fast * 0.5)) / (fast - slow);
+  return {scene, 0.1 * left, 0.1};
+}
+
+TEST(RateSelection, KeepsTheToleranceOfWhatCreepsWithEveryIntegrator) {
+  for (const Creep& creep : {three_mats(), honey(), door()}) {
+    const std::vector<std::string> names = plan::integrators_for(creep.scene);
+    std::vector<std::vector<std::string>> choices{names};  // of all, and each by itself
+    for (const std::string& name : names) choices.push_back({name});
+    for (const std::vector<std::string>& open : choices) {
+      const plan::RateSelection selection =
+          plan::select_rate(creep.scene, AccuracyTarget{0.01, 20.0, 0.1}, 1000.0, open, false);
+      NetworkDescription scene = creep.scene;
+      scene.integrator = engine::integrator_named(selection.integrator);
+      scene.step = 1.0 / selection.rate_hz;
+      World world = make_world(scene);
+      const auto last = static_cast<std::uint32_t>(scene.mats.size() - 1);
+      for (long n = std::lround(0.5 * selection.rate_hz); n > 0; --n) world.step();
+      // `implicit` also damps what swings as it creeps: that is an error of the start, not of what is left.
+      const bool damps = selection.integrator == "implicit";
+      const double whole = std::max(std::abs(creep.exact), damps ? creep.start : 0.0);
+      EXPECT_NEAR(world.position(last).x(), creep.exact, 0.01 * whole)
+          << selection.integrator << " at " << selection.rate_hz << " Hz of " << open.size();
+    }
+  }
 }
 
 TEST(RateSelection, TakesAFactorisationOnlyWhereItSavesFiftySteps) {
