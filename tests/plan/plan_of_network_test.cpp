@@ -104,6 +104,36 @@ TEST(Plan, DoesNotCallAHammerUnstableThatIsStillAwayFromItsString) {
   EXPECT_TRUE(stability.holds());
 }
 
+TEST(Plan, AFeltHammerAtItsRateBringsInNoEnergy) {
+  // a string of 4 g, 220 Hz, and a hammer of 8 g that comes from 5 mm away
+  engine::StateMachine felt = state_machine(0.0, engine::Power{4e8, 2.5});
+  felt.states[0].pulls = false;
+  NetworkDescription scene =
+      mass_on_law(1, 0.008, Vec3(-0.005, 0, 0), Vec3(2, 0, 0), std::move(felt), 0.0);
+  scene.step = 1.0 / 48000.0;
+  constexpr std::uint32_t kCount = 102;
+  for (std::uint32_t i = 1; i < kCount; ++i) {
+    const auto now = static_cast<std::uint32_t>(scene.mats.size());
+    const bool is_end = i + 1 == kCount;
+    scene.mats.push_back(is_end ? fixed(Vec3::Zero()) : mass(4e-5, Vec3::Zero()));
+    scene.links.push_back({i == 1 ? 0U : now - 1, now, 80000.0, 0.002, 0.0});
+  }
+  scene.state_links = {{1, 13, 0, 0.0}};  // the hammer, string[12]
+  EXPECT_FALSE(plan_of(scene, 10.0).stability.diverges());
+
+  World world = make_world(scene);
+  const double start = 0.5 * 0.008 * 2.0 * 2.0;
+  double stored = 0.0;
+  for (int n = 0; n < 24'000; ++n) {
+    world.step();
+    const engine::Energy energy = world.energy();
+    ASSERT_LT(energy.kinetic + energy.elastic, 1.01 * start) << "step " << n;
+    stored = std::max(stored, energy.elastic);
+  }
+  EXPECT_GT(stored, 0.1 * start) << "it has struck";
+  EXPECT_LT(std::abs(world.energy().integration_error()), 0.01 * start);
+}
+
 TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   engine::StateMachine thread = state_machine(2500.0);
   thread.states[0].pushes = false;
