@@ -173,6 +173,36 @@ TEST(BadInput, AllProblemsOfAllNodesAreReportedAtOnce) {
   expect_bad_file(outcome, "key.yaml:2:", "axes");
 }
 
+/// The lines that name a problem, in order.
+std::vector<std::string> problems_in(const std::string& output) {
+  std::vector<std::string> problems;
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_problem = line.find(": error: ") != std::string::npos ||
+                            line.find(": warning: ") != std::string::npos;
+    if (is_problem) problems.push_back(line);
+  }
+  std::sort(problems.begin(), problems.end());
+  return problems;
+}
+
+TEST(BadInput, WhatIsPlayedIsCheckedWithTheWordsOfTheRun) {
+  // `cordis run` asks each node in this way before it starts one.
+  const auto problem_count = [](const std::string& name) {
+    const std::string file = std::string(CORDIS_SOURCE_DIR) + "/launch_configs/" + name + ".yaml";
+    ChildProcess check({program_path("cordis"), "check", file});
+    EXPECT_EQ(check.wait(kPatience), 0) << check.output();
+    ChildProcess sim({program_path("sim_node"), file, "--name", "sim", "--check"});
+    EXPECT_EQ(sim.wait(kPatience), 0) << sim.output();
+    const std::vector<std::string> problems = problems_in(check.output());
+    EXPECT_EQ(problems, problems_in(sim.output()));
+    return problems.size();
+  };
+  EXPECT_EQ(problem_count("plasticine"), 0U);
+  EXPECT_EQ(problem_count("hourglass"), 1U) << "not certain";
+  EXPECT_EQ(problem_count("bodies_meeting"), 1U) << "too stiff for its hand";
+}
+
 TEST(BadInput, ASecondSimOfASessionEndsAndTheFirstGoesOn) {
   LiveSession session("realtime", kSimAndKey);
   session.add_file("scene.yaml", wall_scene(200.0));
