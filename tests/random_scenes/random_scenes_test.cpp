@@ -448,6 +448,8 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   // All but `cordis` take the kinetic energy as the mean of both half steps. A fall adds a quarter of
   // that of one step to it.
   const bool is_cordis = network.integrator == engine::IntegratorKind::kCordis;
+  // The accounts of these two close. That of the others is open by the error of their steps.
+  const bool closes = is_cordis || network.integrator == engine::IntegratorKind::kModal;
   const double kinetic_offset = is_cordis ? 0.0 : 0.25 * fall_of_one_step(network);
   const bool limits_force = has_force_limit(network);
   JumpWatch jumps(world);
@@ -465,7 +467,7 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
       return run;
     }
     run.steps = n;
-    if (is_cordis) rounding += rounding_of(world);
+    if (closes) rounding += rounding_of(world);
     jumps.look(world);
     if (is_within && n % 100 > 0 && n > 100) continue;
     const Energy energy = world.energy();
@@ -483,8 +485,8 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     }
     const bool is_beyond = plan::is_beyond(reach, world, energy);
     constexpr double kOpen = 1e-9;
-    if (is_cordis && std::abs(energy.residual()) >
-                         kOpen * std::max(energy.largest, brought.energy()) + rounding) {
+    if (closes && std::abs(energy.residual()) >
+                      kOpen * std::max(energy.largest, brought.energy()) + rounding) {
       run.growth = "the account is open by " + std::to_string(energy.residual() / energy.largest) +
                    " at step " + std::to_string(n);
       return run;
