@@ -6,7 +6,8 @@
 namespace cordis::engine {
 
 PairBlock::PairBlock(std::size_t pairs_of_row, std::size_t rows)
-    : capacity_(padded(kEnough + pairs_of_row, kPairBatch) + kPairBatch),
+    : capacity_(padded(std::min(kEnough, pairs_of_row * rows) + pairs_of_row, kPairBatch) +
+                kPairBatch),
       start_(rows + 1, 0),
       column_a_(capacity_, 0U),
       column_b_(capacity_, 0U),
