@@ -1,6 +1,7 @@
 // tests/engine/world_test.cpp
 #include "sim_node/engine/world.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -243,29 +244,62 @@ TEST(World, GoesOnAfterAMove) {
   EXPECT_EQ(moved.state_hash(), second.state_hash());
 }
 
-TEST(World, KeepsItsAngularMomentumFor20Seconds) {
-  // Three masses on springs, turning and swinging about a place away from the origin.
-  for (const double rate : {44'100.0, 192'000.0}) {
-    NetworkDescription scene;
-    scene.dimension = 3;
-    scene.step = 1.0 / rate;
-    const Vec3 away(0.7, -0.4, 0.2);
-    scene.mats = {mass(0.1, away, Vec3(0.3, 1.0, -0.2)),
-                  mass(0.2, away + Vec3(0.5, 0.1, 0), Vec3(-0.2, -0.6, 0.3)),
-                  mass(0.15, away + Vec3(0.1, 0.6, 0.3), Vec3(0.1, 0.2, -0.3))};
-    scene.links = {{0, 1, 40.0, 0.0, 0.4}, {1, 2, 70.0, 0.0, 0.5}, {2, 0, 30.0, 0.0, 0.6}};
-    scene.mats[2].velocity = -(0.1 * scene.mats[0].velocity + 0.2 * scene.mats[1].velocity) / 0.15;
-    World world = make_world(scene);
-    world.step();
-    const Vec3 start = world.angular_momentum();
-    double largest = 0.0;
-    for (int n = 0; n < rounds(20); ++n) {
-      run(world, static_cast<int>(rate));
-      largest = std::max(largest, (world.angular_momentum() - start).norm() / start.norm());
-    }
+/// Three masses on springs and dampers, turning and swinging about a place away from the origin.
+NetworkDescription spinning(engine::IntegratorKind integrator, double rate, double viscosity) {
+  NetworkDescription scene;
+  scene.dimension = 3;
+  scene.integrator = integrator;
+  scene.step = 1.0 / rate;
+  const Vec3 away(0.7, -0.4, 0.2);
+  scene.mats = {mass(0.1, away, Vec3(0.3, 1.0, -0.2)),
+                mass(0.2, away + Vec3(0.5, 0.1, 0), Vec3(-0.2, -0.6, 0.3)),
+                mass(0.15, away + Vec3(0.1, 0.6, 0.3), Vec3(0.1, 0.2, -0.3))};
+  scene.links = {
+      {0, 1, 40.0, viscosity, 0.4}, {1, 2, 70.0, viscosity, 0.5}, {2, 0, 30.0, viscosity, 0.6}};
+  scene.mats[2].velocity = -(0.1 * scene.mats[0].velocity + 0.2 * scene.mats[1].velocity) / 0.15;
+  return scene;
+}
 
-    EXPECT_LT(largest, 1e-12) << rate << " Hz";
+/// The largest change of its angular momentum in 20 s, over that of the start.
+double lost_angular_momentum(const NetworkDescription& scene) {
+  World world = make_world(scene);
+  world.step();
+  const Vec3 start = world.angular_momentum();
+  double largest = 0.0;
+  for (int n = 0; n < rounds(20); ++n) {
+    run(world, static_cast<int>(1.0 / scene.step));
+    largest = std::max(largest, (world.angular_momentum() - start).norm() / start.norm());
   }
+  return largest;
+}
+
+TEST(World, KeepsItsAngularMomentumFor20Seconds) {
+  for (const double rate : {44'100.0, 192'000.0}) {
+    EXPECT_LT(lost_angular_momentum(spinning(engine::IntegratorKind::kCordis, rate, 0.0)), 1e-12)
+        << rate << " Hz";
+  }
+}
+
+/// By rounding alone. Two positions, as `leapfrog` keeps them, are rounded to 1e-11 of the way of a step.
+TEST(World, LosesAngularMomentumByRoundingWithOrWithoutViscosity) {
+  using engine::IntegratorKind;
+  for (const double viscosity : {0.0, 1.0, 3000.0}) {
+    EXPECT_LT(lost_angular_momentum(spinning(IntegratorKind::kCordis, 44'100.0, viscosity)), 1e-12);
+    const double of_leapfrog =
+        lost_angular_momentum(spinning(IntegratorKind::kLeapfrog, 44'100.0, viscosity));
+    EXPECT_LT(of_leapfrog, 3e-8) << viscosity;
+  }
+  EXPECT_LT(lost_angular_momentum(spinning(IntegratorKind::kSymplectic4, 44'100.0, 0.0)), 3e-11);
+}
+
+/// What turns is damped by the step, as what swings: by w^2 dt / 2, of first order.
+TEST(World, LosesAngularMomentumInProportionToTheStepWithImplicit) {
+  const double at_44 =
+      lost_angular_momentum(spinning(engine::IntegratorKind::kImplicit, 44'100.0, 1.0));
+  const double at_88 =
+      lost_angular_momentum(spinning(engine::IntegratorKind::kImplicit, 88'200.0, 1.0));
+  EXPECT_NEAR(at_44 / at_88, 2.0, 0.1);
+  EXPECT_LT(at_44, 0.01);
 }
 
 }  // namespace
