@@ -207,7 +207,8 @@ std::string exposure_warning(const dds::Network& network, int domain, bool is_se
   if (network.is_loopback()) return {};
   const std::string where =
       network.address + " (UDP ports of DDS domain " + std::to_string(domain) + ")";
-  if (is_secured) return "whoever reaches " + where + " can end a node with a malformed packet";
+  if (is_secured)
+    return "whoever reaches " + where + " sees who takes part, and can disturb the session";
   return "this session is open to everybody who reaches " + where +
          ": nothing is encrypted and no password is asked for";
 }

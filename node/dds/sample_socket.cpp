@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "node/dds/secure_datagram.h"
+#include "node/dds/datagram_filter.h"
 #include "node/dds/udp_address.h"
 #include "node/dds/udp_locator.h"
 #include "node/time.h"
@@ -25,9 +25,10 @@ SampleSocket::SampleSocket(const std::string& address, const Locator& locator, R
                            std::uint32_t buffer_bytes, std::uint32_t longest_bytes, bool is_secured)
     : file_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)),
       is_secured_(is_secured),
+      longest_(longest_bytes),
       locator_(locator),
       receiver_(&receiver),
-      datagram_(longest_bytes),
+      datagram_(longest_bytes + kBehindFragments),
       attended_nsec_(kNever) {
   const int bytes = static_cast<int>(buffer_bytes);
   setsockopt(file_, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
@@ -47,7 +48,7 @@ SampleSocket::Taken SampleSocket::take() noexcept {
   if (!mutex_.try_lock()) return Taken::kBusy;
   sockaddr_in from{};
   socklen_t from_size = sizeof from;
-  const ssize_t size = recvfrom(file_, datagram_.data(), datagram_.size(), MSG_DONTWAIT,
+  const ssize_t size = recvfrom(file_, datagram_.data(), longest_, MSG_DONTWAIT,
                                 reinterpret_cast<sockaddr*>(&from), &from_size);
   if (size <= 0 || receiver_ == nullptr) {
     mutex_.unlock();
@@ -59,8 +60,8 @@ SampleSocket::Taken SampleSocket::take() noexcept {
 }
 
 void SampleSocket::deliver() noexcept {
-  if (!is_secured_ || is_fit_for_secured(datagram_.data(), size_))
-    receiver_->OnDataReceived(datagram_.data(), size_, locator_, sender_);
+  const std::uint32_t bytes = bytes_to_read(datagram_.data(), size_, is_secured_);
+  if (bytes > 0) receiver_->OnDataReceived(datagram_.data(), bytes, locator_, sender_);
   mutex_.unlock();
 }
 

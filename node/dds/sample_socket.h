@@ -26,7 +26,7 @@ class SampleSocket {
   /// @param receiver        what hands a datagram to DDS; not used after detach()
   /// @param buffer_bytes    that the kernel is to keep
   /// @param longest_bytes   of a datagram
-  /// @param is_secured      datagrams that are not is_fit_for_secured() are dropped
+  /// @param is_secured      of the participant
   /// @throws std::system_error when the port cannot be bound.
   SampleSocket(const std::string& address, const Locator& locator, Receiver& receiver,
                std::uint32_t buffer_bytes, std::uint32_t longest_bytes, bool is_secured = false);
@@ -43,7 +43,7 @@ class SampleSocket {
   };
   /// Takes a datagram out of the socket. Never blocks.
   [[nodiscard]] Taken take() noexcept;
-  /// Hands the datagram taken last to DDS, which calls the listeners of its readers.
+  /// Hands the datagram taken last to DDS, as far as it may be read. DDS calls the listeners of its readers.
   void deliver() noexcept;
 
   /// A loop waits here, and takes what comes. It does so again within kAttended, or another thread
@@ -62,6 +62,7 @@ class SampleSocket {
  private:
   int file_ = -1;
   const bool is_secured_;
+  const std::uint32_t longest_;  // [bytes] of a datagram
   Locator locator_;
   std::mutex mutex_;  // of the next four; held from take() to deliver()
   Receiver* receiver_;

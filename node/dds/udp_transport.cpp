@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <exception>
 #include <utility>
+#include <vector>
 
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -13,8 +15,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "node/dds/datagram_filter.h"
 #include "node/dds/participant_ports.h"
-#include "node/dds/secure_datagram.h"
 #include "node/dds/udp_address.h"
 #include "node/dds/udp_locator.h"
 
@@ -148,8 +150,17 @@ bool UdpTransport::send(rtps::SenderResource* below, const std::uint8_t* datagra
 
 void UdpTransport::receive(SampleSocket::Receiver* next, const std::uint8_t* datagram,
                            std::uint32_t size, const Locator& local, const Locator& remote) {
-  if (descriptor_.participant.security.is_on() && !is_fit_for_secured(datagram, size)) return;
-  next->OnDataReceived(datagram, size, local, remote);
+  const std::uint32_t bytes =
+      bytes_to_read(datagram, size, descriptor_.participant.security.is_on());
+  if (bytes == 0) return;
+  if (!has_fragments(datagram, bytes)) {
+    next->OnDataReceived(datagram, bytes, local, remote);
+    return;
+  }
+  thread_local std::vector<std::uint8_t> copy;
+  copy.resize(std::max(copy.size(), std::size_t{size} + kBehindFragments));
+  std::copy_n(datagram, bytes, copy.begin());
+  next->OnDataReceived(copy.data(), bytes, local, remote);
 }
 
 }  // namespace cordis::dds

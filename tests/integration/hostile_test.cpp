@@ -2,6 +2,7 @@
 // neither ends a node nor silences another.
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -15,6 +16,7 @@
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
+#include "tests/support/datagrams.h"
 
 namespace cordis::test {
 namespace {
@@ -130,6 +132,20 @@ dds::ParticipantConfig of_another_version(LiveSession& session, const std::strin
 std::string of_versions(const std::string& node) {
   return "'" + node + "' speaks version " + std::to_string(kAnotherVersion) +
          " of the wire and this process version " + std::to_string(msg::WIRE_VERSION);
+}
+
+// Fast DDS alone aborts at the first one: APacketWithOneByteMore.
+TEST_F(Hostile, APacketWithOneByteMoreEndsNoNodeAndTakesNoForce) {
+  ASSERT_TRUE(feels_after(500));
+  std::optional<Datagram> packet = an_announcement();
+  ASSERT_TRUE(packet);
+  packet->push_back(0);
+  for (int i = 0; i < 100; ++i) {
+    const std::uint64_t before = force_.answered_sample();
+    send_to_all(*packet);
+    ASSERT_TRUE(feels_after(before)) << i;
+    ASSERT_TRUE(still_run()) << i;
+  }
 }
 
 TEST(AnotherWireVersion, OfADeviceIsGivenNoForceAndNamedOnce) {

@@ -1,0 +1,174 @@
+// node/dds/datagram_filter.cpp
+#include "node/dds/datagram_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "node/dds/rtps_submessage.h"
+#include "node/dds/secure_datagram.h"
+
+namespace cordis::dds {
+namespace {
+
+using Octets = std::span<const std::uint8_t>;
+
+constexpr std::size_t kReaderAndWriter = 8;
+constexpr std::int64_t kLongestGap = 1 << 20;
+constexpr std::uint32_t kLargestSample = 1U << 30;  // [bytes]
+
+/// The bytes of a set of numbers of samples or fragments behind its base: how many, and one bit for each.
+/// Nothing when it is not whole.
+std::optional<std::size_t> bytes_of_set(const Submessage& part, std::size_t at) noexcept {
+  constexpr std::uint32_t kMostBits = 256;
+  if (part.body.size() < at + 4) return std::nullopt;
+  const std::uint32_t bits = part.number32(at);
+  if (bits > kMostBits) return std::nullopt;
+  const std::size_t bytes = 4 + std::size_t{4} * ((bits + 31) / 32);
+  if (part.body.size() < at + bytes) return std::nullopt;
+  return bytes;
+}
+
+bool is_acknowledgement(const Submessage& part) noexcept {
+  constexpr std::size_t kSet = kReaderAndWriter + 8;
+  const std::optional<std::size_t> bytes = bytes_of_set(part, kSet);
+  return bytes && part.body.size() >= kSet + *bytes + 4 && part.sequence(kReaderAndWriter) >= 0;
+}
+
+bool is_gap(const Submessage& part) noexcept {
+  constexpr std::size_t kBase = kReaderAndWriter + 8;
+  if (!bytes_of_set(part, kBase + 8)) return false;
+  const std::int64_t start = part.sequence(kReaderAndWriter);
+  const std::int64_t base = part.sequence(kBase);
+  return start >= 1 && base >= start && base - start <= kLongestGap;
+}
+
+bool is_heartbeat(const Submessage& part) noexcept {
+  if (part.body.size() < kReaderAndWriter + 20) return false;
+  const std::int64_t first = part.sequence(kReaderAndWriter);
+  return first >= 1 && part.sequence(kReaderAndWriter + 8) >= first - 1;
+}
+
+bool is_request_of_fragments(const Submessage& part) noexcept {
+  constexpr std::size_t kBase = kReaderAndWriter + 8;
+  const std::optional<std::size_t> bytes = bytes_of_set(part, kBase + 4);
+  return bytes && part.body.size() >= kBase + 4 + *bytes + 4 && part.number32(kBase) >= 1 &&
+         part.sequence(kReaderAndWriter) >= 1;
+}
+
+/// Where what follows the parameters of a sample begins; nothing when they do not end. They stand where the offset
+/// of the submessage says, which is at least that of the standard.
+std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t least) noexcept {
+  constexpr std::size_t kOffset = 2;  // of itself
+  constexpr std::uint16_t kLast = 1;
+  if (part.body.size() < least) return std::nullopt;
+  std::size_t at = kOffset + 2 + part.number16(kOffset);
+  if (at < least || at > part.body.size()) return std::nullopt;
+  if (!part.has(0x02)) return at;
+  while (at + 4 <= part.body.size()) {
+    const std::uint16_t kind = part.number16(at);
+    const std::size_t length = part.number16(at + 2);
+    at += 4;
+    if (kind == kLast) return at;
+    if (length % 4 != 0 || length > part.body.size() - at) return std::nullopt;
+    at += length;
+  }
+  return std::nullopt;
+}
+
+constexpr std::size_t kSmallestPayload = 4;  // its encoding
+
+bool is_data(const Submessage& part) noexcept {
+  constexpr std::size_t kFields = 20;
+  const std::optional<std::size_t> payload = behind_parameters(part, kFields);
+  if (!payload || part.sequence(12) < 1) return false;
+  const bool has_data = part.has(0x04);
+  const bool has_key = part.has(0x08);
+  if (!has_data && !has_key) return true;
+  return has_data != has_key && part.body.size() - *payload >= kSmallestPayload;
+}
+
+/// One fragment, as every library sends them: of several Fast DDS trusts how long they are together.
+bool is_fragment(const Submessage& part) noexcept {
+  constexpr std::size_t kFields = 32;
+  const std::optional<std::size_t> payload = behind_parameters(part, kFields);
+  if (!payload || part.sequence(12) < 1) return false;
+  const std::uint32_t number = part.number32(20);
+  const std::uint32_t count = part.number16(24);
+  const std::uint32_t length = part.number16(26);
+  const std::uint32_t whole = part.number32(28);
+  if (number < 1 || count != 1 || length < 1 || whole > kLargestSample) return false;
+  const std::uint64_t begin = std::uint64_t{number - 1} * length;
+  if (begin >= whole) return false;
+  return part.body.size() - *payload >= std::min<std::uint64_t>(length, whole - begin);
+}
+
+/// True if Fast DDS can follow this submessage. It skips those of other kinds.
+bool is_sound(const Submessage& part) noexcept {
+  switch (part.kind) {
+    case SubmessageKind::kAckNack:
+      return is_acknowledgement(part);
+    case SubmessageKind::kHeartbeat:
+      return is_heartbeat(part);
+    case SubmessageKind::kGap:
+      return is_gap(part);
+    case SubmessageKind::kInfoTime:
+      return part.has(0x02) || part.body.size() >= 8;
+    case SubmessageKind::kInfoSource:
+      return part.body.size() >= 20;
+    case SubmessageKind::kInfoDestination:
+      return part.body.size() >= 12;
+    case SubmessageKind::kNackFragments:
+      return is_request_of_fragments(part);
+    case SubmessageKind::kHeartbeatFragments:
+      return part.body.size() >= kReaderAndWriter + 16;
+    case SubmessageKind::kData:
+      return is_data(part);
+    case SubmessageKind::kFragments:
+      return is_fragment(part);
+    default:
+      return true;
+  }
+}
+
+/// True for what Fast DDS appends to each datagram: when it left, and how much was sent before. Fast DDS
+/// takes it for such by the vendor of the message.
+bool is_statistics(Octets message, const Submessage& part) noexcept {
+  constexpr std::array<std::uint8_t, 2> kFastDds{0x01, 0x0f};
+  return part.kind == SubmessageKind::kFirstOfVendors &&
+         std::ranges::equal(message.subspan(6, 2), kFastDds);
+}
+
+}  // namespace
+
+std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
+                            bool is_secured) noexcept {
+  const Octets message(datagram, size);
+  if (!is_rtps(message)) return 0;
+  std::size_t end = kRtpsHeader;
+  while (end < message.size()) {
+    const std::optional<Submessage> part = first_submessage(message.subspan(end));
+    if (!part || !is_sound(*part)) return 0;
+    if (is_statistics(message, *part)) {
+      if (end + part->size != message.size()) return 0;
+      break;
+    }
+    end += part->size;
+  }
+  const auto bytes = static_cast<std::uint32_t>(end);
+  if (end == kRtpsHeader || (is_secured && !is_fit_for_secured(datagram, bytes))) return 0;
+  return bytes;
+}
+
+bool has_fragments(const std::uint8_t* datagram, std::uint32_t size) noexcept {
+  Octets rest = Octets(datagram, size).subspan(kRtpsHeader);
+  while (const std::optional<Submessage> part = first_submessage(rest)) {
+    if (part->kind == SubmessageKind::kFragments) return true;
+    rest = rest.subspan(part->size);
+  }
+  return false;
+}
+
+}  // namespace cordis::dds

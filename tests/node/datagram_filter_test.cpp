@@ -1,0 +1,253 @@
+// tests/node/datagram_filter_test.cpp -- what of a datagram Fast DDS may read. The messages are written here by
+// the standard [DDSI-RTPS 9.4.5].
+#include "node/dds/datagram_filter.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace cordis::dds {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Writes numbers in one of the two orders of bytes.
+class BodyWriter {
+ public:
+  explicit BodyWriter(bool is_little) : is_little_(is_little) {}
+
+  BodyWriter& octets(std::initializer_list<int> values) {
+    for (const int value : values) bytes_.push_back(static_cast<std::uint8_t>(value));
+    return *this;
+  }
+  BodyWriter& number16(unsigned value) {
+    return is_little_ ? octets({static_cast<int>(value & 255U), static_cast<int>(value >> 8U)})
+                      : octets({static_cast<int>(value >> 8U), static_cast<int>(value & 255U)});
+  }
+  BodyWriter& number32(std::uint32_t value) {
+    return is_little_ ? number16(value & 65535U).number16(value >> 16U)
+                      : number16(value >> 16U).number16(value & 65535U);
+  }
+  BodyWriter& sequence(std::int64_t value) {
+    return number32(static_cast<std::uint32_t>(static_cast<std::uint64_t>(value) >> 32U))
+        .number32(static_cast<std::uint32_t>(value));
+  }
+  BodyWriter& fill(std::size_t count) {
+    bytes_.resize(bytes_.size() + count, 7);
+    return *this;
+  }
+  const Bytes& bytes() const { return bytes_; }
+
+ private:
+  bool is_little_;
+  Bytes bytes_;
+};
+
+class DatagramFilter : public testing::TestWithParam<bool> {
+ protected:
+  static BodyWriter body() { return BodyWriter(GetParam()); }
+
+  static Bytes submessage(int kind, unsigned flags, const BodyWriter& body) {
+    BodyWriter whole(GetParam());
+    whole.octets({kind, static_cast<int>(flags | (GetParam() ? 1U : 0U))});
+    whole.number16(static_cast<unsigned>(body.bytes().size()));
+    Bytes bytes = whole.bytes();
+    bytes.insert(bytes.end(), body.bytes().begin(), body.bytes().end());
+    return bytes;
+  }
+
+  static Bytes message(const std::vector<Bytes>& parts, int vendor = 0x0f) {
+    Bytes bytes{'R', 'T', 'P', 'S', 2, 3, 1, static_cast<std::uint8_t>(vendor)};
+    bytes.resize(20, 5);
+    for (const Bytes& part : parts) bytes.insert(bytes.end(), part.begin(), part.end());
+    return bytes;
+  }
+
+  static std::size_t read(const Bytes& datagram, bool is_secured = false) {
+    return bytes_to_read(datagram.data(), static_cast<std::uint32_t>(datagram.size()), is_secured);
+  }
+  static bool passes(const Bytes& part) {
+    const Bytes whole = message({part});
+    return read(whole) == whole.size();
+  }
+
+  static Bytes data(unsigned flags, std::size_t payload, std::int64_t sequence = 1,
+                    unsigned offset = 16) {
+    BodyWriter fields = body();
+    fields.number16(0).number16(offset).fill(8).sequence(sequence).fill(offset - 16);
+    return submessage(0x15, flags, fields.fill(payload));
+  }
+  static Bytes fragment(std::uint32_t number, unsigned count, unsigned length, std::uint32_t whole,
+                        std::size_t payload) {
+    BodyWriter fields = body();
+    fields.number16(0).number16(28).fill(8).sequence(1).number32(number).number16(count);
+    return submessage(0x16, 0, fields.number16(length).number32(whole).fill(payload));
+  }
+  static Bytes gap(std::int64_t start, std::int64_t base, std::uint32_t bits, std::size_t words) {
+    return submessage(0x08, 0,
+                      body().fill(8).sequence(start).sequence(base).number32(bits).fill(4 * words));
+  }
+  static Bytes acknowledgement(std::int64_t base, std::uint32_t bits, std::size_t words) {
+    return submessage(0x06, 0, body().fill(8).sequence(base).number32(bits).fill(4 * words + 4));
+  }
+  static Bytes heartbeat(std::int64_t first, std::int64_t last) {
+    return submessage(0x07, 0, body().fill(8).sequence(first).sequence(last).number32(1));
+  }
+  static Bytes statistics() { return submessage(0x80, 0, body().fill(56)); }
+  static Bytes time() { return submessage(0x09, 0, body().fill(8)); }
+  static Bytes destination() { return submessage(0x0e, 0, body().fill(12)); }
+};
+
+TEST_P(DatagramFilter, PassesWhatTheStandardDescribes) {
+  EXPECT_TRUE(passes(data(0x04, 8)));
+  EXPECT_TRUE(passes(data(0x08, 20)));
+  EXPECT_TRUE(passes(data(0x00, 0)));
+  EXPECT_TRUE(passes(data(0x04, 8, 1, 24)));
+  EXPECT_TRUE(passes(heartbeat(1, 0)));
+  EXPECT_TRUE(passes(heartbeat(5, 10)));
+  EXPECT_TRUE(passes(acknowledgement(0, 0, 0)));
+  EXPECT_TRUE(passes(acknowledgement(9, 256, 8)));
+  EXPECT_TRUE(passes(gap(1, 1, 3, 1)));
+  EXPECT_TRUE(passes(gap(1, 1000, 0, 0)));
+  EXPECT_TRUE(passes(time()));
+  EXPECT_TRUE(passes(submessage(0x09, 0x02, body())));  // no time
+  EXPECT_TRUE(passes(destination()));
+  EXPECT_TRUE(passes(submessage(0x0c, 0, body().fill(20))));
+  EXPECT_TRUE(passes(submessage(0x01, 0, body())));
+  EXPECT_TRUE(
+      passes(submessage(0x12, 0, body().fill(8).sequence(1).number32(1).number32(32).fill(8))));
+  EXPECT_TRUE(passes(submessage(0x13, 0, body().fill(8).sequence(1).fill(8))));
+  EXPECT_TRUE(passes(fragment(1, 1, 100, 250, 100)));
+  EXPECT_TRUE(passes(fragment(3, 1, 100, 250, 50)));
+  const Bytes several = message({destination(), time(), data(0x04, 8), heartbeat(1, 1)});
+  EXPECT_EQ(read(several), several.size());
+}
+
+TEST_P(DatagramFilter, CutsStatisticsOffAndTakesNothingBehindThem) {
+  const Bytes sample = message({time(), data(0x04, 8)});
+  const Bytes counted = message({time(), data(0x04, 8), statistics()});
+  EXPECT_EQ(read(counted), sample.size());
+  for (int more = 1; more <= 8; ++more) {
+    Bytes longer = counted;
+    longer.resize(counted.size() + static_cast<std::size_t>(more), 0);
+    EXPECT_EQ(read(longer), 0U) << more << " bytes behind them";
+  }
+  EXPECT_EQ(read(message({statistics(), data(0x04, 8)})), 0U);
+  EXPECT_EQ(read(message({statistics()})), 0U);
+
+  // Other vendors have other things of that number.
+  const Bytes of_others = message({statistics(), data(0x04, 8)}, 0x10);
+  EXPECT_EQ(read(of_others), of_others.size());
+}
+
+TEST_P(DatagramFilter, PassesNoMessageThatEndsTooSoonOrTooLate) {
+  const std::vector<Bytes> parts{destination(),   time(),           data(0x06, 0),
+                                 heartbeat(1, 4), gap(1, 2, 40, 2), acknowledgement(1, 33, 2)};
+  // Parameters of the sample: one of 4 bytes, and the end.
+  BodyWriter fields = body();
+  fields.number16(0).number16(16).fill(8).sequence(1);
+  fields.number16(0x71).number16(4).fill(4).number16(1).number16(0).fill(8);
+  const Bytes whole =
+      message({parts[0], parts[1], submessage(0x15, 0x06, fields), parts[3], parts[4], parts[5]});
+  ASSERT_EQ(read(whole), whole.size());
+  std::vector<std::size_t> ends{20};
+  for (std::size_t at = 20; at < whole.size();) {
+    const std::size_t length =
+        GetParam() ? whole[at + 2] + 256U * whole[at + 3] : 256U * whole[at + 2] + whole[at + 3];
+    ends.push_back(at += 4 + length);
+  }
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const bool is_whole = size > 20 && std::ranges::find(ends, size) != ends.end();
+    EXPECT_EQ(read(part), is_whole ? size : 0U) << size;
+  }
+  for (std::size_t more = 1; more < 4; ++more) {
+    Bytes longer = whole;
+    longer.resize(whole.size() + more, 0);
+    EXPECT_EQ(read(longer), 0U) << more;
+  }
+}
+
+TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
+  EXPECT_FALSE(passes(data(0x04, 0))) << "no payload";
+  EXPECT_FALSE(passes(data(0x04, 3)));
+  EXPECT_FALSE(passes(data(0x0c, 8))) << "both a sample and a key";
+  EXPECT_FALSE(passes(data(0x04, 8, 0))) << "number 0";
+  EXPECT_FALSE(passes(data(0x04, 8, -5)));
+  EXPECT_FALSE(
+      passes(submessage(0x15, 0x04, body().number16(0).number16(12).fill(8).sequence(1).fill(8))))
+      << "parameters within the fields";
+  EXPECT_FALSE(passes(
+      submessage(0x15, 0x04, body().number16(0).number16(65'000).fill(8).sequence(1).fill(8))))
+      << "parameters behind the end";
+  const auto with_parameter = [](unsigned length, bool ends) {
+    BodyWriter fields = body();
+    fields.number16(0).number16(16).fill(8).sequence(1).number16(0x71).number16(length).fill(4);
+    if (ends) fields.number16(1).number16(0);
+    return submessage(0x15, 0x02, fields);
+  };
+  EXPECT_TRUE(passes(with_parameter(4, true)));
+  EXPECT_FALSE(passes(with_parameter(4, false))) << "no end of the parameters";
+  EXPECT_FALSE(passes(with_parameter(3, true)));
+  EXPECT_FALSE(passes(with_parameter(40, true)));
+
+  EXPECT_FALSE(passes(heartbeat(0, 3)));
+  EXPECT_FALSE(passes(heartbeat(5, 3)));
+  EXPECT_FALSE(passes(acknowledgement(-1, 0, 0)));
+  EXPECT_FALSE(passes(acknowledgement(1, 257, 9)));
+  EXPECT_FALSE(passes(acknowledgement(1, 64, 0))) << "fewer bits than it says";
+  EXPECT_FALSE(passes(gap(0, 1, 0, 0)));
+  EXPECT_FALSE(passes(gap(2, 1, 0, 0)));
+  EXPECT_TRUE(passes(gap(1, 1 + (1 << 20), 0, 0)));
+  EXPECT_FALSE(passes(gap(1, 2 + (1 << 20), 0, 0))) << "Fast DDS counts through it";
+  EXPECT_FALSE(passes(gap(1, std::int64_t{1} << 62, 0, 0)));
+  EXPECT_FALSE(passes(submessage(0x0c, 0, body().fill(16))));
+  EXPECT_FALSE(
+      passes(submessage(0x12, 0, body().fill(8).sequence(1).number32(0).number32(0).fill(4))));
+
+  EXPECT_FALSE(passes(fragment(0, 1, 100, 250, 100)));
+  EXPECT_FALSE(passes(fragment(1, 2, 100, 250, 200))) << "two fragments at once";
+  EXPECT_FALSE(passes(fragment(1, 1, 0, 250, 100)));
+  EXPECT_FALSE(passes(fragment(1, 1, 100, 250, 96))) << "shorter than it says";
+  EXPECT_FALSE(passes(fragment(4, 1, 100, 250, 100))) << "behind the end";
+  EXPECT_FALSE(passes(fragment(0xffff'ffff, 1, 65'535, 250, 100)));
+  EXPECT_FALSE(passes(fragment(1, 1, 100, 0xffff'ffff, 100))) << "4 GB";
+}
+
+TEST_P(DatagramFilter, KnowsFragments) {
+  const auto has = [](const Bytes& bytes) {
+    return has_fragments(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  };
+  EXPECT_TRUE(has(message({time(), fragment(1, 1, 100, 250, 100)})));
+  EXPECT_FALSE(has(message({time(), data(0x04, 8), heartbeat(1, 1)})));
+}
+
+TEST_P(DatagramFilter, HoldsASecuredParticipantToMore) {
+  const Bytes encrypted =
+      message({submessage(0x33, 0, body().fill(20)), submessage(0x30, 0, body().fill(32)),
+               submessage(0x34, 0, body().fill(20)), statistics()});
+  EXPECT_EQ(read(encrypted, true), encrypted.size() - 60);
+  Bytes longer = encrypted;
+  longer.push_back(0);
+  EXPECT_EQ(read(longer, true), 0U);
+  const Bytes clear = message({heartbeat(1, 1)});
+  EXPECT_EQ(read(clear, false), clear.size());
+  EXPECT_EQ(read(clear, true), 0U);
+}
+
+TEST(DatagramFilterOfNoRtps, PassesNothing) {
+  EXPECT_EQ(bytes_to_read(nullptr, 0, false), 0U);
+  const Bytes other(64, 'x');
+  EXPECT_EQ(bytes_to_read(other.data(), 64, false), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, DatagramFilter, testing::Bool(), [](const auto& order) {
+  return order.param ? "little_endian" : "big_endian";
+});
+
+}  // namespace
+}  // namespace cordis::dds
