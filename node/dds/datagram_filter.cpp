@@ -21,13 +21,13 @@ constexpr std::uint32_t kLargestSample = 1U << 30;  // [bytes]
 
 /// The bytes of a set of numbers of samples or fragments behind its base: how many, and one bit for each.
 /// Nothing when it is not whole.
-std::optional<std::size_t> bytes_of_set(const Submessage& part, std::size_t at) noexcept {
-  constexpr std::uint32_t kMostBits = 256;
-  if (part.body.size() < at + 4) return std::nullopt;
-  const std::uint32_t bits = part.number32(at);
-  if (bits > kMostBits) return std::nullopt;
+std::optional<std::size_t> bytes_of_set(const Submessage& part, std::size_t offset) noexcept {
+  constexpr std::uint32_t kMaxBits = 256;
+  if (part.body.size() < offset + 4) return std::nullopt;
+  const std::uint32_t bits = part.number32(offset);
+  if (bits > kMaxBits) return std::nullopt;
   const std::size_t bytes = 4 + std::size_t{4} * ((bits + 31) / 32);
-  if (part.body.size() < at + bytes) return std::nullopt;
+  if (part.body.size() < offset + bytes) return std::nullopt;
   return bytes;
 }
 
@@ -64,16 +64,16 @@ std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t
   constexpr std::size_t kOffset = 2;  // of itself
   constexpr std::uint16_t kLast = 1;
   if (part.body.size() < least) return std::nullopt;
-  std::size_t at = kOffset + 2 + part.number16(kOffset);
-  if (at < least || at > part.body.size()) return std::nullopt;
-  if (!part.has(0x02)) return at;
-  while (at + 4 <= part.body.size()) {
-    const std::uint16_t kind = part.number16(at);
-    const std::size_t length = part.number16(at + 2);
-    at += 4;
-    if (kind == kLast) return at;
-    if (length % 4 != 0 || length > part.body.size() - at) return std::nullopt;
-    at += length;
+  std::size_t offset = kOffset + 2 + part.number16(kOffset);
+  if (offset < least || offset > part.body.size()) return std::nullopt;
+  if (!part.has(0x02)) return offset;
+  while (offset + 4 <= part.body.size()) {
+    const std::uint16_t kind = part.number16(offset);
+    const std::size_t length = part.number16(offset + 2);
+    offset += 4;
+    if (kind == kLast) return offset;
+    if (length % 4 != 0 || length > part.body.size() - offset) return std::nullopt;
+    offset += length;
   }
   return std::nullopt;
 }

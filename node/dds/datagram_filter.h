@@ -11,7 +11,7 @@ namespace cordis::dds {
 /// Any process that reaches a port can send anything. Fast DDS aborts on one byte behind its statistics, trusts
 /// lengths and numbers of fragments, and counts through a gap number by number. So a datagram passes when each
 /// submessage is whole and has the fields of its kind within it, with values that Fast DDS can follow.
-/// Statistics, which nobody reads, are cut off. Of a secured participant is_fit_for_secured() holds as well.
+/// Statistics, which no part of Cordis reads, are cut off. Of a secured participant is_fit_for_secured() holds as well.
 /// What a sample or an announcement says is not looked at. Real time; reads `size` bytes.
 /// Source: [DDSI-RTPS 8.3.7, 9.4.5].
 std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,

@@ -44,20 +44,20 @@ struct Submessage {
   bool has(unsigned flag) const noexcept { return (flags & flag) != 0; }
   bool is_little() const noexcept { return has(0x01); }
 
-  std::uint16_t number16(std::size_t at) const noexcept {
-    const unsigned first = body[at];
-    const unsigned second = body[at + 1];
+  std::uint16_t number16(std::size_t offset) const noexcept {
+    const unsigned first = body[offset];
+    const unsigned second = body[offset + 1];
     return static_cast<std::uint16_t>(is_little() ? first + 256 * second : 256 * first + second);
   }
-  std::uint32_t number32(std::size_t at) const noexcept {
-    const std::uint32_t first = number16(at);
-    const std::uint32_t second = number16(at + 2);
+  std::uint32_t number32(std::size_t offset) const noexcept {
+    const std::uint32_t first = number16(offset);
+    const std::uint32_t second = number16(offset + 2);
     return is_little() ? first + 65536 * second : 65536 * first + second;
   }
   /// The number of a sample: its high half comes first, whatever the order of bytes.
-  std::int64_t sequence(std::size_t at) const noexcept {
-    const auto high = static_cast<std::int32_t>(number32(at));
-    return static_cast<std::int64_t>(high) * 4294967296 + number32(at + 4);
+  std::int64_t sequence(std::size_t offset) const noexcept {
+    const auto high = static_cast<std::int32_t>(number32(offset));
+    return static_cast<std::int64_t>(high) * 4294967296 + number32(offset + 4);
   }
 };
 

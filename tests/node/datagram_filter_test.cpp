@@ -1,5 +1,4 @@
-// tests/node/datagram_filter_test.cpp -- what of a datagram Fast DDS may read. The messages are written here by
-// the standard [DDSI-RTPS 9.4.5].
+// tests/node/datagram_filter_test.cpp -- what of a datagram Fast DDS may read, by the standard.
 #include "node/dds/datagram_filter.h"
 
 #include <algorithm>
@@ -155,10 +154,10 @@ TEST_P(DatagramFilter, PassesNoMessageThatEndsTooSoonOrTooLate) {
       message({parts[0], parts[1], submessage(0x15, 0x06, fields), parts[3], parts[4], parts[5]});
   ASSERT_EQ(read(whole), whole.size());
   std::vector<std::size_t> ends{20};
-  for (std::size_t at = 20; at < whole.size();) {
-    const std::size_t length =
-        GetParam() ? whole[at + 2] + 256U * whole[at + 3] : 256U * whole[at + 2] + whole[at + 3];
-    ends.push_back(at += 4 + length);
+  for (std::size_t begin = 20; begin < whole.size();) {
+    const std::size_t length = GetParam() ? whole[begin + 2] + 256U * whole[begin + 3]
+                                          : 256U * whole[begin + 2] + whole[begin + 3];
+    ends.push_back(begin += 4 + length);
   }
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));

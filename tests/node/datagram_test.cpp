@@ -1,4 +1,4 @@
-// tests/node/datagram_test.cpp -- participants on a network that also brings changed copies of what is sent.
+// tests/node/datagram_test.cpp -- a network that also brings changed copies of what is sent.
 //
 // CORDIS_DATAGRAMS=1000000 build/release/bin/datagram_test plays so many copies, CORDIS_RANDOM_SEED=2 others.
 #include <algorithm>
@@ -152,27 +152,27 @@ class BadNetwork {
       const std::size_t begin = below(16) == 0 ? 0 : 20;
       const std::size_t near = std::min<std::size_t>(datagram.size(), begin + 120);
       const std::size_t end = below(2) == 0 ? near : datagram.size();
-      const std::size_t at = begin + below(end > begin ? end - begin : 1);
-      if (at >= datagram.size()) continue;
+      const std::size_t place = begin + below(end > begin ? end - begin : 1);
+      if (place >= datagram.size()) continue;
       switch (below(7)) {
         case 0:
-          datagram[at] ^= static_cast<std::uint8_t>(1U << below(8));
+          datagram[place] ^= static_cast<std::uint8_t>(1U << below(8));
           break;
         case 1:
-          datagram[at] = kEdges[below(kEdges.size())];
+          datagram[place] = kEdges[below(kEdges.size())];
           break;
         case 2:
-          datagram[at] = static_cast<std::uint8_t>(random_());
+          datagram[place] = static_cast<std::uint8_t>(random_());
           break;
         case 3: {
-          const std::size_t aligned = at / 4 * 4;
+          const std::size_t aligned = place / 4 * 4;
           const std::uint8_t value = kEdges[below(kEdges.size())];
           for (std::size_t i = aligned; i < std::min(aligned + 4, datagram.size()); ++i)
             datagram[i] = value;
           break;
         }
         case 4:
-          datagram.resize(std::max<std::size_t>(at, 1));
+          datagram.resize(std::max<std::size_t>(place, 1));
           break;
         case 5:
           datagram.resize(datagram.size() + 1 + below(9), static_cast<std::uint8_t>(below(3)));
@@ -181,7 +181,7 @@ class BadNetwork {
           const Datagram& other = seen_[below(seen_.size())];
           if (other.size() <= 20) break;
           const std::size_t part = 20 + 4 * below((other.size() - 20) / 4);
-          datagram.resize(at / 4 * 4);
+          datagram.resize(place / 4 * 4);
           datagram.insert(datagram.end(), other.begin() + static_cast<std::ptrdiff_t>(part),
                           other.end());
           break;

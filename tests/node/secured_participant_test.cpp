@@ -303,7 +303,8 @@ TEST_F(SecuredParticipant, TakesNoMessageInTheClearInTheNameOfAnother) {
   Pair open(plain("sim"), plain("hand"));
   ASSERT_TRUE(open.one_comes());
   EXPECT_TRUE(forgery_comes(open, false)) << "the forgery is one: without security it is taken";
-  EXPECT_FALSE(forgery_comes(open, true)) << "nobody takes a message that can be read in two ways";
+  EXPECT_FALSE(forgery_comes(open, true))
+      << "a message that can be read in two ways is taken by none";
 
   Pair pair(member("sim", Role::kSim), member("hand", Role::kDevice));
   ASSERT_TRUE(pair.one_comes());

@@ -1,4 +1,4 @@
-// tests/support/datagrams.h -- datagrams of DDS, as any program of this host may take and send them.
+// tests/support/datagrams.h -- datagrams as any program of this host takes and sends them.
 #pragma once
 
 #include <cstdint>
