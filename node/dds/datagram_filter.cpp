@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "node/dds/discovery_check.h"
 #include "node/dds/rtps_submessage.h"
 #include "node/dds/secure_datagram.h"
 
@@ -80,6 +81,18 @@ std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t
 
 constexpr std::size_t kSmallestPayload = 4;  // its encoding
 
+bool is_of(const Submessage& data, const EntityNumber& writer) noexcept {
+  return std::ranges::equal(data.body.subspan(8, 4), writer);
+}
+
+/// True for what finds or authenticates participants where Fast DDS can follow it, and for all else.
+bool is_sound_of_discovery(const Submessage& data, Octets payload) noexcept {
+  const bool is_little = payload[1] % 2 == 1;
+  const Octets message = payload.subspan(kSmallestPayload);
+  if (is_of(data, kAnnouncer)) return is_sound_announcement(message, is_little);
+  return !is_of(data, kAuthenticator) || is_sound_handshake(message, is_little);
+}
+
 bool is_data(const Submessage& part) noexcept {
   constexpr std::size_t kFields = 20;
   const std::optional<std::size_t> payload = behind_parameters(part, kFields);
@@ -87,7 +100,8 @@ bool is_data(const Submessage& part) noexcept {
   const bool has_data = part.has(0x04);
   const bool has_key = part.has(0x08);
   if (!has_data && !has_key) return true;
-  return has_data != has_key && part.body.size() - *payload >= kSmallestPayload;
+  if (has_data == has_key || part.body.size() - *payload < kSmallestPayload) return false;
+  return !has_data || is_sound_of_discovery(part, part.body.subspan(*payload));
 }
 
 /// One fragment, as every library sends them: of several Fast DDS trusts how long they are together.
@@ -95,6 +109,7 @@ bool is_fragment(const Submessage& part) noexcept {
   constexpr std::size_t kFields = 32;
   const std::optional<std::size_t> payload = behind_parameters(part, kFields);
   if (!payload || part.sequence(12) < 1) return false;
+  if (is_of(part, kAnnouncer) || is_of(part, kAuthenticator)) return false;  // these are short
   const std::uint32_t number = part.number32(20);
   const std::uint32_t count = part.number16(24);
   const std::uint32_t length = part.number16(26);

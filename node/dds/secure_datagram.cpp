@@ -2,21 +2,17 @@
 #include "node/dds/secure_datagram.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
 
+#include "node/dds/discovery_check.h"
 #include "node/dds/rtps_submessage.h"
 
 namespace cordis::dds {
 namespace {
 
-using EntityNumber = std::array<std::uint8_t, 4>;
-
 constexpr std::size_t kWriterOfData = 8;  // behind flags, an offset and the reader
-constexpr EntityNumber kAnnouncer{0x00, 0x01, 0x00, 0xc2};
-constexpr EntityNumber kAuthenticator{0x00, 0x02, 0x01, 0xc3};
 
 bool is_of_discovery(const Submessage& data) noexcept {
   if (data.body.size() < kWriterOfData + 4) return false;

@@ -217,6 +217,65 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
   EXPECT_FALSE(passes(fragment(1, 1, 100, 0xffff'ffff, 100))) << "4 GB";
 }
 
+TEST_P(DatagramFilter, LooksIntoWhatFindsAndAuthenticatesParticipants) {
+  const auto data_of = [](int writer_high, int writer_low, const BodyWriter& payload) {
+    BodyWriter fields = body();
+    fields.number16(0).number16(16).octets(
+        {0, 1, 0, 0xc7, 0, writer_high, writer_low == 0xc2 ? 0 : 1, writer_low});
+    fields.sequence(1);
+    BodyWriter whole = body();
+    for (const Bytes& bytes : {fields.bytes(), payload.bytes()}) {
+      for (const std::uint8_t octet : bytes) whole.octets({octet});
+    }
+    return submessage(0x15, 0x04, whole);
+  };
+  const auto text = [](BodyWriter& writer, std::uint32_t said) { writer.number32(said).fill(8); };
+  const auto announcement = [&](unsigned parameter, auto write) {
+    BodyWriter value = body();
+    write(value);
+    BodyWriter payload = body();
+    payload.octets({0, GetParam() ? 3 : 2, 0, 0}).number16(parameter);
+    payload.number16(static_cast<unsigned>(value.bytes().size()));
+    for (const std::uint8_t octet : value.bytes()) payload.octets({octet});
+    return data_of(1, 0xc2, payload.number16(1).number16(0));
+  };
+  const auto properties = [&](BodyWriter& writer, std::uint32_t count, std::uint32_t length) {
+    writer.number32(count);
+    text(writer, 8);
+    text(writer, length);
+  };
+  const auto token = [&](std::uint32_t name, std::uint32_t count, std::uint32_t length) {
+    return [=](BodyWriter& writer) {
+      text(writer, name);
+      properties(writer, count, length);
+      properties(writer, 1, 5);
+    };
+  };
+  for (const unsigned parameter : {0x1001U, 0x1002U}) {
+    EXPECT_TRUE(passes(announcement(parameter, token(8, 1, 6))));
+    EXPECT_FALSE(passes(announcement(parameter, token(0xffff'fffe, 1, 6)))) << "a text of 4 GB";
+    EXPECT_FALSE(passes(announcement(parameter, token(8, 0x7fff'ffff, 6)))) << "so many properties";
+    EXPECT_FALSE(passes(announcement(parameter, token(8, 1, 0xffff'fff0))));
+  }
+  EXPECT_TRUE(passes(announcement(0x59, [&](BodyWriter& w) { properties(w, 1, 8); })));
+  EXPECT_FALSE(passes(announcement(0x59, [&](BodyWriter& w) { properties(w, 2, 8); })));
+  EXPECT_TRUE(passes(announcement(0x62, token(0xffff'fffe, 1, 6))))
+      << "of other kinds the library takes care";
+
+  const auto handshake = [&](std::uint32_t holders, std::uint32_t name) {
+    BodyWriter payload = body();
+    payload.octets({0, GetParam() ? 1 : 0, 0, 0}).fill(96);
+    text(payload, 8);
+    payload.number32(holders);
+    token(name, 1, 6)(payload);
+    return data_of(2, 0xc3, payload);
+  };
+  EXPECT_TRUE(passes(handshake(1, 8)));
+  EXPECT_FALSE(passes(handshake(2, 8)));
+  EXPECT_FALSE(passes(handshake(0x1000'0000, 8)));
+  EXPECT_FALSE(passes(handshake(1, 0xffff'fffe)));
+}
+
 TEST_P(DatagramFilter, KnowsFragments) {
   const auto has = [](const Bytes& bytes) {
     return has_fragments(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
