@@ -53,6 +53,9 @@ class Wire {
   /// Opens file_; false, with or without it, when that fails.
   virtual bool connect() noexcept = 0;
 
+  /// Waits at most so long until something has arrived since the last read that took all there was.
+  virtual bool wait(std::chrono::nanoseconds at_most) noexcept;
+
   int file_ = -1;
   bool is_stream_ = true;  ///< its end is read as no bytes
 
@@ -62,6 +65,7 @@ class Wire {
   ReleaseFrame release_;
   std::array<std::uint8_t, 96> rest_{};  // of a message that was taken in part
   std::size_t rest_count_ = 0;
+  bool may_have_more_ = false;  // than the last read took
   bool mine_ = true;
 };
 
