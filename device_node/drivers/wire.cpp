@@ -71,7 +71,7 @@ class SerialLine final : public Wire {
   }
 
   /// poll() of a line without input waits until a thread of the kernel has handed over what comes. That thread has
-  /// ordinary priority, so on a busy machine a force loop would stand still for 30 to 80 ms. An edge of epoll comes
+  /// ordinary priority, so on a busy machine a force loop would stall for 30 to 80 ms. An edge of epoll comes
   /// from that thread, and asks for nothing.
   bool wait(std::chrono::nanoseconds at_most) noexcept override {
     epoll_event event{};

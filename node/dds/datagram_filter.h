@@ -12,8 +12,8 @@ namespace cordis::dds {
 /// lengths and numbers of fragments, and counts through a gap number by number. So a datagram passes when each
 /// submessage is whole and has the fields of its kind within it, with values that Fast DDS can follow.
 /// Statistics, which no part of Cordis reads, are cut off. Of a secured participant is_fit_for_secured() holds as well.
-/// Of announcements and handshakes is_sound_announcement() and is_sound_handshake() hold; no other sample is looked
-/// into. Real time; reads `size` bytes.
+/// Announcements and handshakes are looked into: is_sound_announcement(), is_sound_handshake(). Other samples are
+/// not. Real time; reads `size` bytes.
 /// Source: [DDSI-RTPS 8.3.7, 9.4.5].
 std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
                             bool is_secured) noexcept;

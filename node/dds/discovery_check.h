@@ -1,4 +1,4 @@
-// node/dds/discovery_check.h -- lengths and counts within what finds and authenticates participants.
+// node/dds/discovery_check.h -- lengths and counts in what finds and authenticates others.
 // Included by node/dds and its tests alone.
 #pragma once
 

@@ -12,6 +12,7 @@
 #include "tests/campaigns/campaign.h"
 #include "tests/campaigns/campaign_session.h"
 #include "tests/campaigns/page_client.h"
+#include "tests/campaigns/stall_watch.h"
 #include "tests/device/faders.h"
 #include "tests/integration/scenes.h"
 #include "tests/support/child_process.h"
@@ -26,7 +27,12 @@ using Seconds = std::chrono::duration<double>;
 using namespace std::chrono_literals;
 
 constexpr const char* kLateWakes = "the machine woke a thread late by [ms]";
+constexpr const char* kUrgentLateWakes =
+    "the machine woke a thread of realtime priority late by [ms]";
 constexpr const char* kNobody = "no node";  // a time without a fault, to compare with
+constexpr double kWatchdog_s = 0.05;        // of kPressedFader
+constexpr double kPeriod_s = 0.001;         // of the force loop
+constexpr double kFade_s = 0.01;            // of 2 N at its slew limit, and some periods
 constexpr int kMaxKills = 4;                // of a node in a minute: the launcher gives up after 5
 
 constexpr const char* kLaunchOfFaults = R"(cordis: 1
@@ -49,20 +55,27 @@ start_ramp_s: 0.05
 driver: firefader
 firefader: {full_scale_n: 5, lost_after_s: 0.2, retry_s: 0.05, port: <tty>}
 )";
-/// How late a thread wakes on any core: what the machine itself does to all processes.
+/// How late threads wake on any core: what the machine itself does to all processes.
 class Lateness {
  public:
+  struct Worst {
+    double ordinary_s = 0.0;
+    double urgent_s = 0.0;  ///< realtime priority, where that is permitted
+  };
+
   Lateness() {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     for (int core = 0; core < cores; ++core) {
-      std::thread& thread = threads_.emplace_back([this] { watch(); });
-      cpu_set_t one;
-      CPU_ZERO(&one);
-      CPU_SET(core, &one);
-      pthread_setaffinity_np(thread.native_handle(), sizeof one, &one);
-      sched_param urgent{};
-      urgent.sched_priority = 1;
-      pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &urgent);  // where it is permitted
+      for (std::atomic<double>* worst : {&ordinary_s_, &urgent_s_}) {
+        std::thread& thread = threads_.emplace_back([this, worst] { watch(*worst); });
+        cpu_set_t one;
+        CPU_ZERO(&one);
+        CPU_SET(core, &one);
+        pthread_setaffinity_np(thread.native_handle(), sizeof one, &one);
+        sched_param urgent{};
+        urgent.sched_priority = 1;
+        if (worst == &urgent_s_) pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &urgent);
+      }
     }
   }
   ~Lateness() {
@@ -72,23 +85,24 @@ class Lateness {
   Lateness(const Lateness&) = delete;
   Lateness& operator=(const Lateness&) = delete;
 
-  /// The latest wake since the call before. [s]
-  double take_worst() noexcept { return worst_s_.exchange(0.0); }
+  /// The latest wakes since the call before.
+  Worst take_worst() noexcept { return {ordinary_s_.exchange(0.0), urgent_s_.exchange(0.0)}; }
 
  private:
-  void watch() {
+  void watch(std::atomic<double>& worst_s) {
     while (!ending_) {
       const auto due = Clock::now() + 1ms;
       std::this_thread::sleep_until(due);
       const double late_s = Seconds(Clock::now() - due).count();
-      for (double worst = worst_s_;
-           late_s > worst && !worst_s_.compare_exchange_weak(worst, late_s);) {
+      for (double worst = worst_s;
+           late_s > worst && !worst_s.compare_exchange_weak(worst, late_s);) {
       }
     }
   }
 
   std::atomic<bool> ending_{false};
-  std::atomic<double> worst_s_{0.0};
+  std::atomic<double> ordinary_s_{0.0};
+  std::atomic<double> urgent_s_{0.0};
   std::vector<std::thread> threads_;
 };
 
@@ -155,6 +169,7 @@ class FaultySession {
       board_.plug.into_serial_line(tty);
     }
     statuses_.emplace(name_, std::vector<std::string>{"sim", "keyboard", "view", "record"});
+    if (is_realtime_) stalls_.emplace(statuses_->participant(), "sim", "keyboard");
     launcher_.emplace(
         std::vector<std::string>{options.programs + "/cordis", "run", launch, "--no-color",
                                  "domain=" + std::to_string(own_domain()), "session=" + name_});
@@ -198,6 +213,13 @@ class FaultySession {
     if (is_fault && process == 0) return "no process of " + fault.node;
     history_ += what + (is_killed ? "" : " for " + std::to_string(fault.stopped_s) + " s") + "\n";
     lateness_.take_worst();
+    urgent_late_s_ = 0.0;
+    if (stalls_) {
+      for (const std::string node : {"sim", "keyboard"}) {
+        stalls_->take_longest(node);
+        overruns_[node] = statuses_->of(node).overruns();
+      }
+    }
     const std::int64_t began = node::monotonic_nsec();
     if (is_fault) kill(process, is_killed ? SIGKILL : SIGSTOP);
     std::string wrong = await_zero(fault, what, began);
@@ -214,6 +236,8 @@ class FaultySession {
     note(what + ": goes on after [s]", released, 1e-9);
     const bool is_same = !is_fault || process_of(*launcher_, fault.node) == process;
     if (is_same == is_killed) return "another life than expected after a " + what;
+    wrong = judge_stalls(fault, what);
+    if (!wrong.empty()) return wrong;
     if (is_realtime_ && fault.node != "sim" && fault.node != "keyboard")
       outcome_.figures[what + ": share of times with the force throughout"].push_back(
           board_.log.zero_since(began) == 0 ? 1.0 : 0.0);
@@ -232,9 +256,31 @@ class FaultySession {
     if (!eventually(has_none, options_.patience)) return what + ": the motor keeps its force";
     const std::int64_t zero_nsec = board_.log.zero_since(began);
     const double zero_s = zero_nsec == 0 ? 0.0 : 1e-9 * static_cast<double>(zero_nsec - began);
-    const double late_s = lateness_.take_worst();
+    const Lateness::Worst late = lateness_.take_worst();
     outcome_.figures[what + ": no force after [ms]"].push_back(1e3 * zero_s);
-    outcome_.figures[kLateWakes].push_back(1e3 * late_s);
+    outcome_.figures[kLateWakes].push_back(1e3 * late.ordinary_s);
+    urgent_late_s_ = late.urgent_s;
+    // The board is a thread of ordinary priority, and so is who releases the motor of a stopped device.
+    if (zero_s <= kWatchdog_s + kFade_s + 2.0 * late.ordinary_s) return "";
+    return what + ": the motor keeps its force for " + std::to_string(zero_s) +
+           " s, when the machine was late by " + std::to_string(late.ordinary_s) + " s";
+  }
+
+  /// In real time the force loop goes on while another node than its two is away, and comes back.
+  std::string judge_stalls(const Fault& fault, const std::string& what) {
+    if (!stalls_ || fault.node == "sim" || fault.node == "keyboard") return "";
+    const double late_s = std::max(lateness_.take_worst().urgent_s, urgent_late_s_);
+    outcome_.figures[kUrgentLateWakes].push_back(1e3 * late_s);
+    for (const std::string node : {"sim", "keyboard"}) {
+      const double stall_s = stalls_->take_longest(node);
+      outcome_.figures[what + ": no sample of " + node + " for [ms]"].push_back(1e3 * stall_s);
+      // A device without its board writes no samples, though its loop goes on: then no tick of it is late.
+      const double late_ticks_s =
+          kPeriod_s * static_cast<double>(statuses_->of(node).overruns() - overruns_[node]);
+      if (std::min(stall_s, late_ticks_s) > kWatchdog_s + late_s)
+        return what + ": " + node + " stalls for " + std::to_string(stall_s) +
+               " s, when the machine was late by " + std::to_string(late_s) + " s";
+    }
     return "";
   }
 
@@ -286,8 +332,11 @@ class FaultySession {
   Folder folder_;
   Faders board_;
   Lateness lateness_;
+  double urgent_late_s_ = 0.0;  // since the fault, until there was no force
   PageClient page_;
   std::optional<Statuses> statuses_;
+  std::optional<StallWatch> stalls_;               // in real time
+  std::map<std::string, std::uint64_t> overruns_;  // before a fault
   std::optional<ChildProcess> launcher_;
   std::string history_;
   Outcome outcome_;
