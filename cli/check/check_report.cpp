@@ -151,20 +151,29 @@ std::string stability_text(const SceneCheck& check) {
   return text + limit_text(check);
 }
 
+std::string swing_text(double frequency_hz, const plan::OscillatorError& error) {
+  return fmt::format("accuracy    at {:.4g} Hz: pitch {} ({:+.2g} cent), decay {} at most\n",
+                     frequency_hz, percent(error.pitch), plan::cents(error.pitch),
+                     percent(error.decay));
+}
+
 std::string accuracy_text(const SceneCheck& check) {
   const plan::BandEdge& edge = check.plan.band_edge;
   if (edge.error.creeps) {
+    const std::string creep = percent(edge.error.creep);
+    if (edge.swinging && edge.swinging->oscillates) {
+      return swing_text(edge.frequency_hz, *edge.swinging) +
+             fmt::format("            what its dampers let creep: {} at most\n", creep);
+    }
     return fmt::format(
         "accuracy    at {:.4g} Hz the viscosity lets nothing swing: creep {} at most\n",
-        edge.frequency_hz, percent(edge.error.creep));
+        edge.frequency_hz, creep);
   }
   if (!edge.error.oscillates) {
     return fmt::format("accuracy    at {:.4g} Hz nothing can swing at this rate and viscosity\n",
                        edge.frequency_hz);
   }
-  return fmt::format("accuracy    at {:.4g} Hz: pitch {} ({:+.2g} cent), decay {} at most\n",
-                     edge.frequency_hz, percent(edge.error.pitch), plan::cents(edge.error.pitch),
-                     percent(edge.error.decay));
+  return swing_text(edge.frequency_hz, edge.error);
 }
 
 /// What the scene asks for, and what the plan does about it.
@@ -458,6 +467,7 @@ std::string text_of(const SceneCheck& check) {
 std::string json_of(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   const plan::BandEdge& edge = check.plan.band_edge;
+  const plan::OscillatorError& swing = edge.swinging ? *edge.swinging : edge.error;
   nlohmann::json json{{"scene", check.scene.name},
                       {"file", check.scene.file},
                       {"integrator", engine::to_string(check.scene.network.integrator)},
@@ -475,11 +485,11 @@ std::string json_of(const SceneCheck& check) {
                         {"sets", sets_json(check)}}},
                       {"accuracy",
                        {{"band_hz", edge.frequency_hz},
-                        {"oscillates", edge.error.oscillates},
+                        {"oscillates", swing.oscillates},
                         {"creeps", edge.error.creeps},
                         {"creep_error", edge.error.creep},
-                        {"pitch_error", edge.error.pitch},
-                        {"decay_error", edge.error.decay}}},
+                        {"pitch_error", swing.pitch},
+                        {"decay_error", swing.decay}}},
                       {"ports", ports_json(check)},
                       {"problems", problems_json(check.problems)},
                       {"reductions", reductions_json(check.scene.reductions)}};

@@ -321,6 +321,27 @@ double certain_step_of(const engine::NetworkDescription& network, const LiaisonG
   return low;
 }
 
+namespace {
+
+/// The least Z / m of a vibration: of linear springs, each with its damper, Z >= w^2 min(Z / K), and what the medium
+/// adds. Of all else 0, for its slopes are known from above alone.
+double least_viscosity_of(const LiaisonGraph& graph, double w) {
+  double ratio = std::numeric_limits<double>::infinity();
+  for (const Edge& edge : graph.edges) {
+    if (edge.liaison.kind != LiaisonKind::kLink || edge.follows) return 0.0;
+    if (edge.stiffness > 0.0) ratio = std::min(ratio, edge.viscosity / edge.stiffness);
+  }
+  if (!graph.contacts.empty() || !graph.forces.empty() || !graph.maxwell_links.empty()) return 0.0;
+  double of_medium = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
+    if (graph.inverse_mass[i] > 0.0)
+      of_medium = std::min(of_medium, graph.medium_viscosity[i] * graph.inverse_mass[i]);
+  }
+  return w * w * ratio + of_medium;
+}
+
+}  // namespace
+
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz) {
   // A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the
@@ -348,7 +369,10 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
   edge.viscosity = std::min(w * w * ratio + of_medium, of_dampers);
+  edge.least_viscosity = std::min(least_viscosity_of(graph, w), edge.viscosity);
   edge.error = oscillator_error(w, edge.viscosity, network.step, network.integrator);
+  if (0.5 * edge.viscosity >= w && 0.5 * edge.least_viscosity < w)
+    edge.swinging = oscillator_error(w, edge.least_viscosity, network.step, network.integrator);
   return edge;
 }
 

@@ -84,20 +84,27 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
     const double most = 4.0 * target.contact_energy / (1.0 + target.contact_energy);
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
   }
-  const BandEdge edge = band_edge_of(per_gesture, graph, target.band_hz);
   const engine::IntegratorKind integrator = network.integrator;
-  consider(largest_step(
-               edge, integrator, pitch_tolerance(edge, target),
-               [](const OscillatorError& e) { return e.pitch; }, &OscillatorError::oscillates),
-           RateReason::kPitch);
-  consider(largest_step(
-               edge, integrator, decay_tolerance(edge, target),
-               [](const OscillatorError& e) { return e.decay; }, &OscillatorError::oscillates),
-           RateReason::kDecay);
-  consider(largest_step(
-               edge, integrator, creep_tolerance(edge, target),
-               [](const OscillatorError& e) { return e.creep; }, &OscillatorError::creeps),
-           RateReason::kCreep);
+  const auto consider_vibration = [&](const BandEdge& edge) {
+    consider(largest_step(
+                 edge, integrator, pitch_tolerance(edge, target),
+                 [](const OscillatorError& e) { return e.pitch; }, &OscillatorError::oscillates),
+             RateReason::kPitch);
+    consider(largest_step(
+                 edge, integrator, decay_tolerance(edge, target),
+                 [](const OscillatorError& e) { return e.decay; }, &OscillatorError::oscillates),
+             RateReason::kDecay);
+    consider(largest_step(
+                 edge, integrator, creep_tolerance(edge, target),
+                 [](const OscillatorError& e) { return e.creep; }, &OscillatorError::creeps),
+             RateReason::kCreep);
+  };
+  BandEdge edge = band_edge_of(per_gesture, graph, target.band_hz);
+  consider_vibration(edge);
+  if (edge.swinging) {
+    edge.viscosity = edge.least_viscosity;
+    consider_vibration(edge);
+  }
 
   constexpr double kRounding = 1e-9;
   formula.needed_hz = 1.0 / step;

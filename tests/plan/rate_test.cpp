@@ -82,6 +82,23 @@ TEST(FormulaRate, WhereNothingSwingsTheCreepAsksForMore) {
   EXPECT_NEAR(std::log1p(phase) / phase, 1.0 - 0.01, 1e-6);
 }
 
+TEST(FormulaRate, IsThatOfWhatSwingsThoughADamperElsewhereLetsNothingSwing) {
+  // A bob of 200 Hz beside a door whose closer has Z / m = 25,000 1/s.
+  NetworkDescription bob = oscillator(0.5, 789'500.0, 0.1, 1.0, 0.0, 1.0);
+  NetworkDescription both = bob;
+  both.mats.push_back(bob.mats[1]);
+  both.mats.back().mass = 0.002;
+  both.links.push_back({0, 2, 100.0, 50.0, 0.0});
+  for (const auto integrator :
+       {engine::IntegratorKind::kLeapfrog, engine::IntegratorKind::kCordis}) {
+    bob.integrator = both.integrator = integrator;
+    const AccuracyTarget target{0.01, 200.0, 0.1};
+    const FormulaRate alone = rate_by_formula(bob, target, 1000.0);
+    const FormulaRate beside = rate_by_formula(both, target, 1000.0);
+    EXPECT_GE(beside.needed_hz, alone.needed_hz * (1.0 - 1e-9)) << engine::to_string(integrator);
+  }
+}
+
 TEST(FormulaRate, StaysBelowTheLimit) {
   const FormulaRate choice = rate_by_formula(oscillator(0.1, 1e6, 0.0, 1.0, 0.0, 1e-3),
                                              AccuracyTarget{0.1, 1.0, 0.5}, 1000.0);
