@@ -325,7 +325,7 @@ namespace {
 
 /// The least Z / m of a vibration: of linear springs, each with its damper, Z >= w^2 min(Z / K), and what the medium
 /// adds. Of all else 0, for its slopes are known from above alone.
-double least_viscosity_of(const LiaisonGraph& graph, double w) {
+double min_viscosity_of(const LiaisonGraph& graph, double w) {
   double ratio = std::numeric_limits<double>::infinity();
   for (const Edge& edge : graph.edges) {
     if (edge.liaison.kind != LiaisonKind::kLink || edge.follows) return 0.0;
@@ -369,10 +369,10 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
   edge.viscosity = std::min(w * w * ratio + of_medium, of_dampers);
-  edge.least_viscosity = std::min(least_viscosity_of(graph, w), edge.viscosity);
+  edge.min_viscosity = std::min(min_viscosity_of(graph, w), edge.viscosity);
   edge.error = oscillator_error(w, edge.viscosity, network.step, network.integrator);
-  if (0.5 * edge.viscosity >= w && 0.5 * edge.least_viscosity < w)
-    edge.swinging = oscillator_error(w, edge.least_viscosity, network.step, network.integrator);
+  if (0.5 * edge.viscosity >= w && 0.5 * edge.min_viscosity < w)
+    edge.swinging = oscillator_error(w, edge.min_viscosity, network.step, network.integrator);
   return edge;
 }
 

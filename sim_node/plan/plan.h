@@ -60,9 +60,9 @@ double certain_step_of(const engine::NetworkDescription& network, const LiaisonG
 /// viscosity.
 struct BandEdge {
   double frequency_hz = 0.0;
-  double viscosity = 0.0;        ///< Z / m of the vibration, at most [1/s]
-  double least_viscosity = 0.0;  ///< Z / m of the vibration, at least [1/s]
-  OscillatorError error;         ///< with the most of it
+  double viscosity = 0.0;      ///< Z / m of the vibration, at most [1/s]
+  double min_viscosity = 0.0;  ///< Z / m of the vibration, at least [1/s]
+  OscillatorError error;       ///< with the largest of it
 
   /// The errors with the least of it, where one vibration of that frequency may creep and another one swing.
   std::optional<OscillatorError> swinging;

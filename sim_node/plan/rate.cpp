@@ -102,7 +102,7 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
   BandEdge edge = band_edge_of(per_gesture, graph, target.band_hz);
   consider_vibration(edge);
   if (edge.swinging) {
-    edge.viscosity = edge.least_viscosity;
+    edge.viscosity = edge.min_viscosity;
     consider_vibration(edge);
   }
 
