@@ -62,7 +62,7 @@ struct BandEdge {
   double frequency_hz = 0.0;
   double viscosity = 0.0;      ///< Z / m of the vibration, at most [1/s]
   double min_viscosity = 0.0;  ///< Z / m of the vibration, at least [1/s]
-  OscillatorError error;       ///< with the largest of it
+  OscillatorError error;       ///< errors at the largest viscosity
 
   /// The errors with the least of it, where one vibration of that frequency may creep and another one swing.
   std::optional<OscillatorError> swinging;

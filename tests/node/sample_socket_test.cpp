@@ -15,9 +15,18 @@
 
 #include "node/dds/udp_address.h"
 #include "node/time.h"
+#include "tests/support/eventually.h"
 
 namespace cordis::dds {
 namespace {
+
+/// The smallest that DDS may read: a header, and a submessage of padding [DDSI-RTPS 8.3.7.11].
+struct Message {
+  std::array<char, 4> magic{'R', 'T', 'P', 'S'};
+  std::array<std::uint8_t, 16> header{};
+  std::array<std::uint8_t, 4> padding{0x01, 0x01, 4, 0};
+  std::uint32_t number = 0;
+};
 
 /// Counts how often each datagram is delivered; only one thread may be in here.
 class Counter final : public SampleSocket::Receiver {
@@ -27,9 +36,10 @@ class Counter final : public SampleSocket::Receiver {
                       const SampleSocket::Locator& local,
                       const SampleSocket::Locator& remote) override {
     EXPECT_FALSE(is_in_use_.exchange(true)) << "two threads at once";
-    std::uint32_t number = 0;
-    ASSERT_EQ(size, sizeof number);
-    std::memcpy(&number, data, sizeof number);
+    Message message;
+    ASSERT_EQ(size, sizeof message);
+    std::memcpy(&message, data, sizeof message);
+    const std::uint32_t number = message.number;
     ++times_.at(number);
     local_ = local;
     remote_ = remote;
@@ -64,9 +74,10 @@ class Sender {
 
   void send(std::uint32_t number, std::uint16_t port) const {
     const sockaddr_in to = udp_address(port);
-    EXPECT_EQ(
-        sendto(file_, &number, sizeof number, 0, reinterpret_cast<const sockaddr*>(&to), sizeof to),
-        static_cast<ssize_t>(sizeof number));
+    const Message message{.number = number};
+    EXPECT_EQ(sendto(file_, &message, sizeof message, 0, reinterpret_cast<const sockaddr*>(&to),
+                     sizeof to),
+              static_cast<ssize_t>(sizeof message));
   }
   std::uint16_t port() const { return ntohs(own_.sin_port); }
 
@@ -114,9 +125,9 @@ TEST(SampleSocket, DeliversEachDatagramOnceWhateverThreadsTakeThem) {
   }
   for (std::uint32_t n = 0; n < kSent; ++n) {
     sender.send(n, port);
-    while (counter.count() + 500 < static_cast<int>(n)) std::this_thread::yield();
+    if (!test::eventually([&] { return counter.count() + 500 >= static_cast<int>(n); })) break;
   }
-  while (counter.count() < static_cast<int>(kSent)) std::this_thread::yield();
+  EXPECT_TRUE(test::eventually([&] { return counter.count() == static_cast<int>(kSent); }));
   is_over = true;
   for (std::thread& taker : takers) taker.join();
 
