@@ -17,7 +17,7 @@ namespace {
 using Octets = std::span<const std::uint8_t>;
 
 constexpr std::size_t kReaderAndWriter = 8;
-constexpr std::int64_t kLongestGap = 1 << 20;
+constexpr std::int64_t kLongestGap = 65'536;        // of all gaps of a datagram together
 constexpr std::uint32_t kLargestSample = 1U << 30;  // [bytes]
 
 /// The bytes of a set of numbers of samples or fragments behind its base: how many, and one bit for each.
@@ -43,7 +43,12 @@ bool is_gap(const Submessage& part) noexcept {
   if (!bytes_of_set(part, kBase + 8)) return false;
   const std::int64_t start = part.sequence(kReaderAndWriter);
   const std::int64_t base = part.sequence(kBase);
-  return start >= 1 && base >= start && base - start <= kLongestGap;
+  return start >= 1 && base >= start;
+}
+
+/// The numbers through which Fast DDS counts at a gap.
+std::int64_t length_of_gap(const Submessage& gap) noexcept {
+  return gap.sequence(kReaderAndWriter + 8) - gap.sequence(kReaderAndWriter);
 }
 
 bool is_heartbeat(const Submessage& part) noexcept {
@@ -55,8 +60,9 @@ bool is_heartbeat(const Submessage& part) noexcept {
 bool is_request_of_fragments(const Submessage& part) noexcept {
   constexpr std::size_t kBase = kReaderAndWriter + 8;
   const std::optional<std::size_t> bytes = bytes_of_set(part, kBase + 4);
+  constexpr std::uint32_t kLargestBase = 0xffff'ffff - 256;
   return bytes && part.body.size() >= kBase + 4 + *bytes + 4 && part.number32(kBase) >= 1 &&
-         part.sequence(kReaderAndWriter) >= 1;
+         part.number32(kBase) <= kLargestBase && part.sequence(kReaderAndWriter) >= 1;
 }
 
 /// Where what follows the parameters of a sample begins; nothing when they do not end. They stand where the offset
@@ -85,18 +91,29 @@ bool is_of(const Submessage& data, const EntityNumber& writer) noexcept {
   return std::ranges::equal(data.body.subspan(8, 4), writer);
 }
 
-/// True for what finds or authenticates participants where Fast DDS can follow it, and for all else.
+bool is_of_discovery(const Submessage& data) noexcept {
+  return std::ranges::any_of(std::array{kAnnouncer, kAuthenticator, kOfferer, kAsker},
+                             [&](const EntityNumber& writer) { return is_of(data, writer); });
+}
+
+/// True for what finds or authenticates others where Fast DDS can follow it, and for all else.
 bool is_sound_of_discovery(const Submessage& data, Octets payload) noexcept {
   const bool is_little = payload[1] % 2 == 1;
   const Octets message = payload.subspan(kSmallestPayload);
   if (is_of(data, kAnnouncer)) return is_sound_announcement(message, is_little);
+  if (is_of(data, kOfferer) || is_of(data, kAsker)) return is_sound_endpoint(message, is_little);
   return !is_of(data, kAuthenticator) || is_sound_handshake(message, is_little);
+}
+
+/// True if a sample has a writer. Fast DDS takes those of none without a match.
+bool has_writer(const Submessage& data) noexcept {
+  return data.number32(8) != 0;
 }
 
 bool is_data(const Submessage& part) noexcept {
   constexpr std::size_t kFields = 20;
   const std::optional<std::size_t> payload = behind_parameters(part, kFields);
-  if (!payload || part.sequence(12) < 1) return false;
+  if (!payload || part.sequence(12) < 1 || !has_writer(part)) return false;
   const bool has_data = part.has(0x04);
   const bool has_key = part.has(0x08);
   if (!has_data && !has_key) return true;
@@ -104,20 +121,40 @@ bool is_data(const Submessage& part) noexcept {
   return !has_data || is_sound_of_discovery(part, part.body.subspan(*payload));
 }
 
-/// One fragment, as every library sends them: of several Fast DDS trusts how long they are together.
+/// Fast DDS keeps a list of missing fragments in the memory of the sample: 4 bytes at the beginning of each.
+bool has_room_for_list(std::uint64_t whole, std::uint64_t length) noexcept {
+  constexpr std::uint64_t kMaxFragments = 1 << 17;
+  constexpr std::uint64_t kShortest = 8;  // [bytes]
+  if (length < kShortest || (whole + length - 1) / length > kMaxFragments) return false;
+  return ((whole - 1) / length * length + 3) / 4 * 4 + 4 <= whole;
+}
+
 bool is_fragment(const Submessage& part) noexcept {
   constexpr std::size_t kFields = 32;
   const std::optional<std::size_t> payload = behind_parameters(part, kFields);
-  if (!payload || part.sequence(12) < 1) return false;
-  if (is_of(part, kAnnouncer) || is_of(part, kAuthenticator)) return false;  // these are short
-  const std::uint32_t number = part.number32(20);
-  const std::uint32_t count = part.number16(24);
-  const std::uint32_t length = part.number16(26);
-  const std::uint32_t whole = part.number32(28);
-  if (number < 1 || count != 1 || length < 1 || whole > kLargestSample) return false;
-  const std::uint64_t begin = std::uint64_t{number - 1} * length;
-  if (begin >= whole) return false;
-  return part.body.size() - *payload >= std::min<std::uint64_t>(length, whole - begin);
+  if (!payload || part.sequence(12) < 1 || !has_writer(part)) return false;
+  if (is_of_discovery(part)) return false;  // what it sends is short
+  const std::uint64_t number = part.number32(20);
+  const std::uint64_t count = part.number16(24);
+  const std::uint64_t length = part.number16(26);
+  const std::uint64_t whole = part.number32(28);
+  if (number < 1 || count < 1 || count > kMaxFragmentsAtOnce) return false;
+  if (whole < 1 || whole > kLargestSample || !has_room_for_list(whole, length)) return false;
+  if (number - 1 + count > (whole + length - 1) / length) return false;
+  return part.body.size() - *payload >= std::min(count * length, whole - (number - 1) * length);
+}
+
+/// True if what is encrypted ends within its submessage: its length stands before it, high bytes first.
+bool is_secure_body(const Submessage& part) noexcept {
+  if (part.body.size() < 4) return false;
+  std::uint32_t said = 0;
+  for (const std::uint8_t octet : part.body.first(4)) said = 256 * said + octet;
+  return said <= part.body.size() - 4;
+}
+
+/// True if who sends is somebody.
+bool has_prefix(Octets prefix) noexcept {
+  return std::ranges::any_of(prefix, [](std::uint8_t octet) { return octet != 0; });
 }
 
 /// True if Fast DDS can follow this submessage. It skips those of other kinds.
@@ -132,13 +169,15 @@ bool is_sound(const Submessage& part) noexcept {
     case SubmessageKind::kInfoTime:
       return part.has(0x02) || part.body.size() >= 8;
     case SubmessageKind::kInfoSource:
-      return part.body.size() >= 20;
+      return part.body.size() >= 20 && has_prefix(part.body.subspan(8, 12));
     case SubmessageKind::kInfoDestination:
       return part.body.size() >= 12;
     case SubmessageKind::kNackFragments:
       return is_request_of_fragments(part);
     case SubmessageKind::kHeartbeatFragments:
       return part.body.size() >= kReaderAndWriter + 16;
+    case SubmessageKind::kSecureBody:
+      return is_secure_body(part);
     case SubmessageKind::kData:
       return is_data(part);
     case SubmessageKind::kFragments:
@@ -161,11 +200,16 @@ bool is_statistics(Octets message, const Submessage& part) noexcept {
 std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
                             bool is_secured) noexcept {
   const Octets message(datagram, size);
-  if (!is_rtps(message)) return 0;
+  if (!is_rtps(message) || !has_prefix(message.subspan(8, 12))) return 0;
   std::size_t end = kRtpsHeader;
+  std::int64_t gaps = 0;
   while (end < message.size()) {
     const std::optional<Submessage> part = first_submessage(message.subspan(end));
     if (!part || !is_sound(*part)) return 0;
+    if (part->kind == SubmessageKind::kGap) {
+      const std::int64_t length = length_of_gap(*part);
+      if (length > kLongestGap || (gaps += length) > kLongestGap) return 0;
+    }
     if (is_statistics(message, *part)) {
       if (end + part->size != message.size()) return 0;
       break;

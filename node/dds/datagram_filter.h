@@ -12,8 +12,7 @@ namespace cordis::dds {
 /// lengths and numbers of fragments, and counts through a gap number by number. So a datagram passes when each
 /// submessage is whole and has the fields of its kind within it, with values that Fast DDS can follow.
 /// Statistics, which no part of Cordis reads, are cut off. Of a secured participant is_fit_for_secured() holds as well.
-/// Announcements and handshakes are looked into: is_sound_announcement(), is_sound_handshake(). Other samples are
-/// not. Real time; reads `size` bytes.
+/// What finds and authenticates others is looked into (discovery_check.h). Other samples are not. Real time; reads `size` bytes.
 /// Source: [DDSI-RTPS 8.3.7, 9.4.5].
 std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
                             bool is_secured) noexcept;
@@ -22,6 +21,8 @@ std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
 /// that came, so it may read up to kBehindFragments bytes behind the last one.
 bool has_fragments(const std::uint8_t* datagram, std::uint32_t size) noexcept;
 
-inline constexpr std::uint32_t kBehindFragments = 65'536;
+inline constexpr std::uint32_t kMaxFragmentsAtOnce =
+    16;  ///< of one submessage: CycloneDDS sends 10
+inline constexpr std::uint32_t kBehindFragments = kMaxFragmentsAtOnce * 65'536;
 
 }  // namespace cordis::dds

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 namespace cordis::dds {
 namespace {
@@ -55,6 +56,35 @@ class Cursor {
     }
     return true;
   }
+  /// A number of texts.
+  bool skip_texts() noexcept {
+    std::uint32_t count = 0;
+    if (!read32(count) || count > rest_.size() / 4) return false;
+    for (; count > 0; --count) {
+      if (!skip_octets()) return false;
+    }
+    return true;
+  }
+  /// A number of values of this size.
+  bool skip_values(std::size_t bytes) noexcept {
+    std::uint32_t count = 0;
+    return read32(count) && count <= rest_.size() / bytes;
+  }
+  /// A text that ends with a 0.
+  bool skip_name() noexcept {
+    std::uint32_t count = 0;
+    return read32(count) && count >= 1 && count <= rest_.size() && rest_[count - 1] == 0;
+  }
+  /// A GUID of somebody. @param entity  of a participant, or of any
+  bool skip_guid(std::optional<std::uint32_t> entity) noexcept {
+    Octets prefix;
+    Octets number;
+    if (!take(12, prefix) || !take(4, number)) return false;
+    std::uint32_t found = 0;
+    for (const std::uint8_t octet : number) found = 256 * found + octet;
+    const bool is_one = std::ranges::any_of(prefix, [](std::uint8_t octet) { return octet != 0; });
+    return is_one && (entity ? found == *entity : found != 0);
+  }
   bool skip_holder() noexcept { return skip_octets() && skip_properties() && skip_properties(); }
 
  private:
@@ -63,19 +93,61 @@ class Cursor {
 };
 
 constexpr std::uint16_t kLast = 0x0001;
-constexpr std::uint16_t kProperties = 0x0059;
-constexpr std::uint16_t kIdentity = 0x1001;
-constexpr std::uint16_t kPermissions = 0x1002;
 
-bool is_sound(std::uint16_t parameter, Cursor value) noexcept {
-  if (parameter == kProperties) return value.skip_properties();
-  if (parameter == kIdentity || parameter == kPermissions) return value.skip_holder();
-  return true;
+bool is_sound_of_participant(std::uint16_t parameter, Cursor value) noexcept {
+  constexpr std::uint32_t kParticipant = 0x000001c1;
+  std::uint32_t seconds = 0;
+  switch (parameter) {
+    case 0x0002:  // how long it is taken to live
+      return value.read32(seconds) && seconds >= 1 && seconds <= 0x7fff'ffff;
+    case 0x0050:
+      return value.skip_guid(kParticipant);
+    case 0x0059:
+      return value.skip_properties();
+    case 0x1001:  // tokens of its identity and permissions
+    case 0x1002:
+      return value.skip_holder();
+    default:
+      return true;
+  }
 }
 
-}  // namespace
+bool is_sound_of_endpoint(std::uint16_t parameter, Cursor value) noexcept {
+  std::uint32_t number = 0;
+  switch (parameter) {
+    case 0x0005:  // names of its topic and type
+    case 0x0007:
+      return value.skip_name();
+    case 0x0006:  // strength
+      return value.read32(number) && number <= 0x7fff'ffff;
+    case 0x0029:  // partitions
+      return value.skip_texts();
+    case 0x002c:  // data of users
+    case 0x002d:
+    case 0x002e:
+      return value.skip_octets();
+    case 0x0035:  // a filter: its name, topic, class and expression, and what that takes
+      return value.skip_octets() && value.skip_octets() && value.skip_octets() &&
+             value.skip_octets() && value.skip_texts();
+    case 0x0059:
+      return value.skip_properties();
+    case 0x005a:
+      return value.skip_guid({});
+    case 0x0069:  // descriptions of its type
+    case 0x0072:
+      return false;
+    case 0x0073:  // encodings
+      return value.skip_values(2);
+    case 0x8006:  // domains of shared memory
+      return value.skip_values(8);
+    default:
+      return true;
+  }
+}
 
-bool is_sound_announcement(Octets parameters, bool is_little) noexcept {
+/// True if all parameters of a list are whole, and each of them is sound.
+template <class IsSound>
+bool are_sound(Octets parameters, bool is_little, IsSound is_sound) noexcept {
   Cursor all(parameters, is_little);
   while (!all.is_at_end()) {
     std::uint16_t parameter = 0;
@@ -87,6 +159,16 @@ bool is_sound_announcement(Octets parameters, bool is_little) noexcept {
     if (!is_sound(parameter, Cursor(value, is_little))) return false;
   }
   return false;
+}
+
+}  // namespace
+
+bool is_sound_announcement(Octets parameters, bool is_little) noexcept {
+  return are_sound(parameters, is_little, is_sound_of_participant);
+}
+
+bool is_sound_endpoint(Octets parameters, bool is_little) noexcept {
+  return are_sound(parameters, is_little, is_sound_of_endpoint);
 }
 
 bool is_sound_handshake(Octets message, bool is_little) noexcept {

@@ -2,6 +2,7 @@
 #include "node/dds/library_faults.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <stdexcept>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/common/Guid.h>
 #include <fastdds/rtps/common/GuidPrefix_t.hpp>
+#include <fastdds/rtps/common/SequenceNumber.h>
 #include <fastdds/rtps/messages/RTPSMessageGroup.h>
 #include <fastdds/rtps/messages/RTPSMessageSenderInterface.hpp>
 #include <fastdds/rtps/writer/RTPSWriter.h>
@@ -24,6 +26,14 @@ class SecurityManager {
                            const std::vector<GuidPrefix_t>& receivers) const;
 };
 }  // namespace eprosima::fastrtps::rtps::security
+namespace eprosima::fastrtps::rtps {
+class WriterProxy {
+ public:
+  int lost_changes_update(const SequenceNumber_t& first);
+  SequenceNumber_t available_changes_max() const;
+  void loaded_from_storage(const SequenceNumber_t& last);
+};
+}  // namespace eprosima::fastrtps::rtps
 namespace eprosima::fastdds::dds {
 class DataWriterImpl {
  public:
@@ -50,6 +60,7 @@ struct OfLibrary {
   void (*received_by_all)(DataWriterImpl::InnerDataWriterListener*, rtps::RTPSWriter*,
                           rtps::CacheChange_t*);
   bool (*insert)(rtps::RTPSMessageGroup*, const rtps::GuidPrefix_t&, bool);
+  int (*lose)(rtps::WriterProxy*, const rtps::SequenceNumber_t&);
 };
 
 template <class Function>
@@ -74,6 +85,8 @@ const OfLibrary& of_library() noexcept {
         "_ZN8eprosima8fastrtps4rtps16RTPSMessageGroup17insert_submessageERKNS1_"
         "12GuidPrefix_tEb",
         found.insert);
+    find("_ZN8eprosima8fastrtps4rtps11WriterProxy19lost_changes_updateERKNS1_16SequenceNumber_tE",
+         found.lose);
     return found;
   }();
   return kFound;
@@ -120,6 +133,16 @@ bool rtps::RTPSMessageGroup::insert_submessage(const GuidPrefix_t& receiver, boo
   return of_library().insert(this, receiver, is_big);
 }
 
+/// Drops samples of a writer that are gone before this one. Where they are many, none of them is waited for: Fast DDS
+/// 2.9.1 counts through their numbers one by one, with the lock of the reader, for 2^61 of them without an end.
+int rtps::WriterProxy::lost_changes_update(const SequenceNumber_t& first) {
+  constexpr std::uint64_t kMany = 65'536;
+  const std::uint64_t before = available_changes_max().to64long();
+  const int lost = of_library().lose(this, first);
+  if (first.to64long() > before + kMany) loaded_from_storage(available_changes_max());
+  return lost;
+}
+
 bool rtps::StatefulWriter::matched_reader_remove(const GUID_t& reader) {
   a_receiver_leaves = true;
   const bool removed = of_library().remove_reader(this, reader);
@@ -139,7 +162,7 @@ namespace cordis::dds {
 void take_out_library_faults() {
   const OfLibrary& found = of_library();
   if (found.encode == nullptr || found.remove_reader == nullptr ||
-      found.received_by_all == nullptr || found.insert == nullptr) {
+      found.received_by_all == nullptr || found.insert == nullptr || found.lose == nullptr) {
     throw std::runtime_error(
         "this library of Fast DDS lacks functions that Cordis checks: install libfastrtps2.9");
   }

@@ -8,64 +8,78 @@
 
 namespace cordis::dds {
 
+/// A type whose samples are refused where they cannot be read. Fast DDS reads a sample of a topic with keys before
+/// any reader does, in a thread of its own, where an exception ends the process.
+template <class Generated>
+class CarefulType final : public Generated {
+ public:
+  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+    try {
+      return Generated::deserialize(payload, data);
+    } catch (...) {
+      return false;
+    }
+  }
+};
+
 template <class Message>
 struct TypeOf;
 
 template <>
 struct TypeOf<msg::GesturePositions> {
-  using Type = msg::GesturePositionsPubSubType;
+  using Type = CarefulType<msg::GesturePositionsPubSubType>;
 };
 template <>
 struct TypeOf<msg::GestureForces> {
-  using Type = msg::GestureForcesPubSubType;
+  using Type = CarefulType<msg::GestureForcesPubSubType>;
 };
 template <>
 struct TypeOf<msg::DeviceDescription> {
-  using Type = msg::DeviceDescriptionPubSubType;
+  using Type = CarefulType<msg::DeviceDescriptionPubSubType>;
 };
 template <>
 struct TypeOf<msg::PointerTarget> {
-  using Type = msg::PointerTargetPubSubType;
+  using Type = CarefulType<msg::PointerTargetPubSubType>;
 };
 template <>
 struct TypeOf<msg::PointerState> {
-  using Type = msg::PointerStatePubSubType;
+  using Type = CarefulType<msg::PointerStatePubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneDescription> {
-  using Type = msg::SceneDescriptionPubSubType;
+  using Type = CarefulType<msg::SceneDescriptionPubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneFrame> {
-  using Type = msg::SceneFramePubSubType;
+  using Type = CarefulType<msg::SceneFramePubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneSignals> {
-  using Type = msg::SceneSignalsPubSubType;
+  using Type = CarefulType<msg::SceneSignalsPubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneSound> {
-  using Type = msg::SceneSoundPubSubType;
+  using Type = CarefulType<msg::SceneSoundPubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneEvents> {
-  using Type = msg::SceneEventsPubSubType;
+  using Type = CarefulType<msg::SceneEventsPubSubType>;
 };
 template <>
 struct TypeOf<msg::SceneInputs> {
-  using Type = msg::SceneInputsPubSubType;
+  using Type = CarefulType<msg::SceneInputsPubSubType>;
 };
 template <>
 struct TypeOf<msg::ControlCommand> {
-  using Type = msg::ControlCommandPubSubType;
+  using Type = CarefulType<msg::ControlCommandPubSubType>;
 };
 template <>
 struct TypeOf<msg::ControlReply> {
-  using Type = msg::ControlReplyPubSubType;
+  using Type = CarefulType<msg::ControlReplyPubSubType>;
 };
 template <>
 struct TypeOf<msg::NodeStatus> {
-  using Type = msg::NodeStatusPubSubType;
+  using Type = CarefulType<msg::NodeStatusPubSubType>;
 };
 
 }  // namespace cordis::dds

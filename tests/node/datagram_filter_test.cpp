@@ -122,6 +122,7 @@ TEST_P(DatagramFilter, PassesWhatTheStandardDescribes) {
   EXPECT_TRUE(passes(submessage(0x13, 0, body().fill(8).sequence(1).fill(8))));
   EXPECT_TRUE(passes(fragment(1, 1, 100, 250, 100)));
   EXPECT_TRUE(passes(fragment(3, 1, 100, 250, 50)));
+  EXPECT_TRUE(passes(fragment(1, 10, 1'344, 100'000, 13'440))) << "as CycloneDDS sends them";
   const Bytes several = message({destination(), time(), data(0x04, 8), heartbeat(1, 1)});
   EXPECT_EQ(read(several), several.size());
 }
@@ -177,6 +178,9 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
   EXPECT_FALSE(passes(data(0x0c, 8))) << "both a sample and a key";
   EXPECT_FALSE(passes(data(0x04, 8, 0))) << "number 0";
   EXPECT_FALSE(passes(data(0x04, 8, -5)));
+  EXPECT_FALSE(passes(submessage(
+      0x15, 0x04, body().number16(0).number16(16).number32(7).number32(0).sequence(1).fill(8))))
+      << "no writer";
   EXPECT_FALSE(
       passes(submessage(0x15, 0x04, body().number16(0).number16(12).fill(8).sequence(1).fill(8))))
       << "parameters within the fields";
@@ -201,15 +205,20 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
   EXPECT_FALSE(passes(acknowledgement(1, 64, 0))) << "fewer bits than it says";
   EXPECT_FALSE(passes(gap(0, 1, 0, 0)));
   EXPECT_FALSE(passes(gap(2, 1, 0, 0)));
-  EXPECT_TRUE(passes(gap(1, 1 + (1 << 20), 0, 0)));
-  EXPECT_FALSE(passes(gap(1, 2 + (1 << 20), 0, 0))) << "Fast DDS counts through it";
+  EXPECT_TRUE(passes(gap(1, 1 + 65'536, 0, 0)));
+  EXPECT_FALSE(passes(gap(1, 2 + 65'536, 0, 0))) << "Fast DDS counts through it";
+  EXPECT_EQ(read(message({gap(1, 40'000, 0, 0), gap(1, 40'000, 0, 0)})), 0U);
   EXPECT_FALSE(passes(gap(1, std::int64_t{1} << 62, 0, 0)));
   EXPECT_FALSE(passes(submessage(0x0c, 0, body().fill(16))));
   EXPECT_FALSE(
       passes(submessage(0x12, 0, body().fill(8).sequence(1).number32(0).number32(0).fill(4))));
 
   EXPECT_FALSE(passes(fragment(0, 1, 100, 250, 100)));
-  EXPECT_FALSE(passes(fragment(1, 2, 100, 250, 200))) << "two fragments at once";
+  EXPECT_FALSE(passes(fragment(2, 3, 100, 250, 300))) << "more than there are";
+  EXPECT_FALSE(passes(fragment(1, 17, 100, 25'000, 1'700)));
+  EXPECT_FALSE(passes(fragment(1, 1, 4, 250, 4))) << "no room for what is missing";
+  EXPECT_FALSE(passes(fragment(1, 1, 100, 1'002, 100)));
+  EXPECT_FALSE(passes(fragment(1, 1, 8, 1U << 30, 8)));
   EXPECT_FALSE(passes(fragment(1, 1, 0, 250, 100)));
   EXPECT_FALSE(passes(fragment(1, 1, 100, 250, 96))) << "shorter than it says";
   EXPECT_FALSE(passes(fragment(4, 1, 100, 250, 100))) << "behind the end";
@@ -220,8 +229,9 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
 TEST_P(DatagramFilter, LooksIntoWhatFindsAndAuthenticatesParticipants) {
   const auto data_of = [](int writer_high, int writer_low, const BodyWriter& payload) {
     BodyWriter fields = body();
-    fields.number16(0).number16(16).octets(
-        {0, 1, 0, 0xc7, 0, writer_high, writer_low == 0xc2 ? 0 : 1, writer_low});
+    fields.number16(0).number16(16).octets({0, 1, 0, 0xc7, 0, writer_high,
+                                            writer_low == 0xc3 ? 1 : writer_low / 256,
+                                            writer_low % 256});
     fields.sequence(1);
     BodyWriter whole = body();
     for (const Bytes& bytes : {fields.bytes(), payload.bytes()}) {
@@ -262,6 +272,53 @@ TEST_P(DatagramFilter, LooksIntoWhatFindsAndAuthenticatesParticipants) {
   EXPECT_TRUE(passes(announcement(0x62, token(0xffff'fffe, 1, 6))))
       << "of other kinds the library takes care";
 
+  const auto number = [](std::uint32_t value) {
+    return [=](BodyWriter& writer) { writer.number32(value).fill(4); };
+  };
+  EXPECT_TRUE(passes(announcement(0x02, number(1))));
+  EXPECT_FALSE(passes(announcement(0x02, number(0)))) << "it has ended before it began";
+  EXPECT_FALSE(passes(announcement(0x02, number(0xffff'ffff))));
+  const auto guid = [](int first, int last) {
+    return [=](BodyWriter& writer) {
+      writer.octets({first, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, last});
+    };
+  };
+  EXPECT_TRUE(passes(announcement(0x50, guid(1, 0xc1))));
+  EXPECT_FALSE(passes(announcement(0x50, guid(0, 0xc1))));
+  EXPECT_FALSE(passes(announcement(0x50, guid(1, 0xc2))));
+
+  const auto endpoint = [&](unsigned parameter, auto write) {
+    BodyWriter value = body();
+    write(value);
+    BodyWriter payload = body();
+    payload.octets({0, GetParam() ? 3 : 2, 0, 0}).number16(parameter);
+    payload.number16(static_cast<unsigned>(value.bytes().size()));
+    for (const std::uint8_t octet : value.bytes()) payload.octets({octet});
+    return data_of(0, 0x3c2, payload.number16(1).number16(0));
+  };
+  const auto texts = [&](std::uint32_t count, std::uint32_t length) {
+    return [=](BodyWriter& writer) {
+      writer.number32(count);
+      text(writer, length);
+    };
+  };
+  EXPECT_TRUE(passes(endpoint(0x29, texts(1, 8))));
+  EXPECT_FALSE(passes(endpoint(0x29, texts(0xffff'ffff, 8))));
+  EXPECT_FALSE(passes(endpoint(0x29, texts(2, 0xffff'ff00))));
+  EXPECT_FALSE(passes(endpoint(0x73, texts(0xffff'ffff, 8))));
+  EXPECT_FALSE(passes(endpoint(0x8006, texts(0xffff'ffff, 8))));
+  EXPECT_TRUE(passes(endpoint(0x73, [](BodyWriter& w) { w.number32(1).number16(0).number16(0); })));
+  EXPECT_TRUE(passes(endpoint(0x05, [](BodyWriter& w) {
+    w.number32(3).octets({'a', 'b', 0, 0});
+  })));
+  EXPECT_FALSE(passes(endpoint(0x05, [](BodyWriter& w) {
+    w.number32(4).octets({'a', 'b', 'c', 'd'});
+  })));
+  EXPECT_FALSE(passes(endpoint(0x05, number(0xffff'ffff))));
+  EXPECT_FALSE(passes(endpoint(0x06, number(0xffff'ffff))));
+  EXPECT_FALSE(passes(endpoint(0x69, number(0)))) << "a description of its type";
+  EXPECT_FALSE(passes(endpoint(0x5a, guid(0, 0xc7))));
+
   const auto handshake = [&](std::uint32_t holders, std::uint32_t name) {
     BodyWriter payload = body();
     payload.octets({0, GetParam() ? 1 : 0, 0, 0}).fill(96);
@@ -285,13 +342,16 @@ TEST_P(DatagramFilter, KnowsFragments) {
 }
 
 TEST_P(DatagramFilter, HoldsASecuredParticipantToMore) {
-  const Bytes encrypted =
-      message({submessage(0x33, 0, body().fill(20)), submessage(0x30, 0, body().fill(32)),
-               submessage(0x34, 0, body().fill(20)), statistics()});
+  const Bytes encrypted = message({submessage(0x33, 0, body().fill(20)),
+                                   submessage(0x30, 0, body().octets({0, 0, 0, 28}).fill(28)),
+                                   submessage(0x34, 0, body().fill(20)), statistics()});
   EXPECT_EQ(read(encrypted, true), encrypted.size() - 60);
   Bytes longer = encrypted;
   longer.push_back(0);
   EXPECT_EQ(read(longer, true), 0U);
+  const Bytes too_long = message({submessage(0x33, 0, body().fill(20)),
+                                  submessage(0x30, 0, body().octets({0, 0, 0, 29}).fill(28))});
+  EXPECT_EQ(read(too_long, true), 0U);
   const Bytes clear = message({heartbeat(1, 1)});
   EXPECT_EQ(read(clear, false), clear.size());
   EXPECT_EQ(read(clear, true), 0U);

@@ -20,6 +20,8 @@
 #include <dlfcn.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastrtps/attributes/LibrarySettingsAttributes.h>
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -346,6 +348,10 @@ void play(const Members& members, long copies) {
   constexpr int kWritesOfASession = 300;
   constexpr int kOfEach = 8;
   const std::uint64_t seed = test::test_seed(20261129);
+  eprosima::fastrtps::LibrarySettingsAttributes
+      settings;  // else messages within a process need no datagram
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) std::signal(signal, keep_playing);
   std::printf("%ld copies, seed %llu\n", copies, static_cast<unsigned long long>(seed));
   network().begin(kOfEach, copies, seed);
