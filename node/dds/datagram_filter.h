@@ -21,7 +21,7 @@ std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
 /// that came, so it may read up to kBehindFragments bytes behind the last one.
 bool has_fragments(const std::uint8_t* datagram, std::uint32_t size) noexcept;
 
-/// Of one submessage. CycloneDDS sends 10.
+/// The fragments that one submessage may have: CycloneDDS sends 10.
 inline constexpr std::uint32_t kMaxFragmentsAtOnce = 16;
 inline constexpr std::uint32_t kBehindFragments = kMaxFragmentsAtOnce * 65'536;
 
