@@ -65,11 +65,20 @@ bool is_request_of_fragments(const Submessage& part) noexcept {
          part.number32(kBase) <= kLargestBase && part.sequence(kReaderAndWriter) >= 1;
 }
 
+/// True if a writer of samples takes a key back and stays. Fast DDS aborts where it had left before. The writers of
+/// Cordis, and those of others by default, leave with it.
+bool takes_back_alone(const Submessage& data, Octets status) noexcept {
+  constexpr std::uint8_t kOfDiscovery = 0xc0;
+  const bool is_of_samples = (data.body[11] & kOfDiscovery) != kOfDiscovery;
+  return is_of_samples && status[3] == 1;
+}
+
 /// Where what follows the parameters of a sample begins; nothing when they do not end. They stand where the offset
 /// of the submessage says, which is at least that of the standard.
 std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t least) noexcept {
   constexpr std::size_t kOffset = 2;  // of itself
   constexpr std::uint16_t kLast = 1;
+  constexpr std::uint16_t kStatus = 0x0071;
   if (part.body.size() < least) return std::nullopt;
   std::size_t offset = kOffset + 2 + part.number16(kOffset);
   if (offset < least || offset > part.body.size()) return std::nullopt;
@@ -80,6 +89,8 @@ std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t
     offset += 4;
     if (kind == kLast) return offset;
     if (length % 4 != 0 || length > part.body.size() - offset) return std::nullopt;
+    if (kind == kStatus && length == 4 && takes_back_alone(part, part.body.subspan(offset, length)))
+      return std::nullopt;
     offset += length;
   }
   return std::nullopt;

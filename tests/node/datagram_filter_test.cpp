@@ -198,6 +198,17 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
   EXPECT_FALSE(passes(with_parameter(3, true)));
   EXPECT_FALSE(passes(with_parameter(40, true)));
 
+  const auto with_status = [](int status, int writer_kind) {
+    BodyWriter fields = body();
+    fields.number16(0).number16(16).number32(7).octets({0, 0, 3, writer_kind}).sequence(1);
+    fields.number16(0x71).number16(4).octets({0, 0, 0, status}).number16(1).number16(0);
+    return submessage(0x15, 0x02, fields);
+  };
+  EXPECT_TRUE(passes(with_status(3, 0x02)));
+  EXPECT_TRUE(passes(with_status(2, 0x02)));
+  EXPECT_FALSE(passes(with_status(1, 0x02))) << "a key is taken back alone";
+  EXPECT_TRUE(passes(with_status(1, 0xc2))) << "of discovery";
+
   EXPECT_FALSE(passes(heartbeat(0, 3)));
   EXPECT_FALSE(passes(heartbeat(5, 3)));
   EXPECT_FALSE(passes(acknowledgement(-1, 0, 0)));
