@@ -23,7 +23,7 @@ namespace {
 /// The smallest that DDS may read: a header, and a submessage of padding [DDSI-RTPS 8.3.7.11].
 struct Message {
   std::array<char, 4> magic{'R', 'T', 'P', 'S'};
-  std::array<std::uint8_t, 16> header{};
+  std::array<std::uint8_t, 16> header{2, 3, 1, 15, 7};  // version, vendor, who sends
   std::array<std::uint8_t, 4> padding{0x01, 0x01, 4, 0};
   std::uint32_t number = 0;
 };
