@@ -125,8 +125,11 @@ class Person {
   /** Shows all that buttons hide: signals to choose, one against another, parameters, a mass that is picked, and its way. */
   async showAll() {
     await this.load(SCENES[2]); // it has signals, keys and parameters
-    await this.pick();
-    await until('a mass is picked', () => this.page.locator('#picked').isVisible());
+    if (await viz(this.page, 'frozen')) await this.page.keyboard.press('h');
+    await until('a mass is picked', async () => {
+      if (!(await this.page.locator('#picked').isVisible())) await this.pick();
+      return this.page.locator('#picked').isVisible();
+    });
     const off = (await this.controls()).filter((control) => control.off && control.usable);
     for (const { name } of off) await this.use(name);
   }
@@ -167,7 +170,7 @@ const cases = {
 
   'the view goes on after every control and every scene': async (session) => {
     const { page } = session;
-    const seed = Number(process.env.CORDIS_SEED ?? Date.now() % 100_000);
+    const seed = Number(process.env.CORDIS_SEED ?? 20261129);
     console.log(`CORDIS_SEED=${seed}`);
     const draw = lot(seed);
     const html = await (await page.request.get(page.url())).text();
