@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kWriterOfData = 8;  // behind flags, an offset and the reader
 
-bool is_of_discovery(const Submessage& data) noexcept {
+bool finds_or_authenticates(const Submessage& data) noexcept {
   if (data.body.size() < kWriterOfData + 4) return false;
   const std::span<const std::uint8_t> writer = data.body.subspan(kWriterOfData, 4);
   return std::ranges::equal(writer, kAnnouncer) || std::ranges::equal(writer, kAuthenticator);
@@ -30,7 +30,7 @@ bool is_fit(const Submessage& part) noexcept {
       return true;
     case SubmessageKind::kData:
     case SubmessageKind::kFragments:
-      return is_of_discovery(part);
+      return finds_or_authenticates(part);
     default:
       return part.kind >= SubmessageKind::kFirstOfVendors;
   }
