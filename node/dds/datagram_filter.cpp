@@ -98,10 +98,6 @@ std::optional<std::size_t> behind_parameters(const Submessage& part, std::size_t
 
 constexpr std::size_t kSmallestPayload = 4;  // its encoding
 
-bool is_of(const Submessage& data, const EntityNumber& writer) noexcept {
-  return std::ranges::equal(data.body.subspan(8, 4), writer);
-}
-
 bool is_of_discovery(const Submessage& data) noexcept {
   return std::ranges::any_of(std::array{kAnnouncer, kAuthenticator, kOfferer, kAsker},
                              [&](const EntityNumber& writer) { return is_of(data, writer); });
@@ -163,11 +159,6 @@ bool is_secure_body(const Submessage& part) noexcept {
   return said <= part.body.size() - 4;
 }
 
-/// True if who sends is somebody.
-bool has_prefix(Octets prefix) noexcept {
-  return std::ranges::any_of(prefix, [](std::uint8_t octet) { return octet != 0; });
-}
-
 /// True if Fast DDS can follow this submessage. It skips those of other kinds.
 bool is_sound(const Submessage& part) noexcept {
   switch (part.kind) {
@@ -180,7 +171,7 @@ bool is_sound(const Submessage& part) noexcept {
     case SubmessageKind::kInfoTime:
       return part.has(0x02) || part.body.size() >= 8;
     case SubmessageKind::kInfoSource:
-      return part.body.size() >= 20 && has_prefix(part.body.subspan(8, 12));
+      return part.body.size() >= 20 && is_prefix(part.body.subspan(8, 12));
     case SubmessageKind::kInfoDestination:
       return part.body.size() >= 12;
     case SubmessageKind::kNackFragments:
@@ -211,7 +202,7 @@ bool is_statistics(Octets message, const Submessage& part) noexcept {
 std::uint32_t bytes_to_read(const std::uint8_t* datagram, std::uint32_t size,
                             bool is_secured) noexcept {
   const Octets message(datagram, size);
-  if (!is_rtps(message) || !has_prefix(message.subspan(8, 12))) return 0;
+  if (!is_rtps(message) || !is_prefix(message.subspan(8, 12))) return 0;
   std::size_t end = kRtpsHeader;
   std::int64_t gaps = 0;
   while (end < message.size()) {

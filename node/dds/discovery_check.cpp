@@ -82,8 +82,7 @@ class Cursor {
     if (!take(12, prefix) || !take(4, number)) return false;
     std::uint32_t found = 0;
     for (const std::uint8_t octet : number) found = 256 * found + octet;
-    const bool is_one = std::ranges::any_of(prefix, [](std::uint8_t octet) { return octet != 0; });
-    return is_one && (entity ? found == *entity : found != 0);
+    return is_prefix(prefix) && (entity ? found == *entity : found != 0);
   }
   bool skip_holder() noexcept { return skip_octets() && skip_properties() && skip_properties(); }
 

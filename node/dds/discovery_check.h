@@ -2,14 +2,12 @@
 // Included by node/dds and its tests alone.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
-namespace cordis::dds {
+#include "node/dds/rtps_submessage.h"
 
-/// The number of a writer or reader within its participant.
-using EntityNumber = std::array<std::uint8_t, 4>;
+namespace cordis::dds {
 
 inline constexpr EntityNumber kAnnouncer{0x00, 0x01, 0x00, 0xc2};
 inline constexpr EntityNumber kAuthenticator{0x00, 0x02, 0x01, 0xc3};

@@ -61,6 +61,21 @@ struct Submessage {
   }
 };
 
+/// The number of a writer or reader within its participant.
+using EntityNumber = std::array<std::uint8_t, 4>;
+
+/// True if a sample, or a fragment of one, is of this writer.
+inline bool is_of(const Submessage& data, const EntityNumber& writer) noexcept {
+  constexpr std::size_t kWriter = 8;  // behind flags, an offset and the reader
+  return data.body.size() >= kWriter + writer.size() &&
+         std::ranges::equal(data.body.subspan(kWriter, writer.size()), writer);
+}
+
+/// True if these octets, what a GUID begins with, are those of a participant: not all are 0.
+inline bool is_prefix(std::span<const std::uint8_t> octets) noexcept {
+  return std::ranges::any_of(octets, [](std::uint8_t octet) { return octet != 0; });
+}
+
 /// True if a datagram begins as one of RTPS.
 inline bool is_rtps(std::span<const std::uint8_t> datagram) noexcept {
   constexpr std::array<std::uint8_t, 4> kMagic{'R', 'T', 'P', 'S'};

@@ -1,8 +1,6 @@
 // node/dds/secure_datagram.cpp
 #include "node/dds/secure_datagram.h"
 
-#include <algorithm>
-#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -11,14 +9,6 @@
 
 namespace cordis::dds {
 namespace {
-
-constexpr std::size_t kWriterOfData = 8;  // behind flags, an offset and the reader
-
-bool finds_or_authenticates(const Submessage& data) noexcept {
-  if (data.body.size() < kWriterOfData + 4) return false;
-  const std::span<const std::uint8_t> writer = data.body.subspan(kWriterOfData, 4);
-  return std::ranges::equal(writer, kAnnouncer) || std::ranges::equal(writer, kAuthenticator);
-}
 
 bool is_fit(const Submessage& part) noexcept {
   switch (part.kind) {
@@ -30,7 +20,7 @@ bool is_fit(const Submessage& part) noexcept {
       return true;
     case SubmessageKind::kData:
     case SubmessageKind::kFragments:
-      return finds_or_authenticates(part);
+      return is_of(part, kAnnouncer) || is_of(part, kAuthenticator);
     default:
       return part.kind >= SubmessageKind::kFirstOfVendors;
   }

@@ -16,6 +16,7 @@
 #include "cli/exit_code.h"
 #include "tests/cli/captured_run.h"
 #include "tests/support/filled.h"
+#include "tests/support/watched_scenes.h"
 
 namespace cordis::cli {
 namespace {
@@ -276,21 +277,7 @@ links:
 
 TEST_F(Checked, BetweenTheTwoLimitsItSaysWhatTheRunWatches) {
   // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
-  std::ofstream(path_) << R"(cordis: 1
-name: snatch
-space: 1
-step: {rate_hz: 1000}
-liaisons:
-  rope:
-    states:
-      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}
-      taut: {stiffness_n_per_m: 410000, final: true}
-matter:
-  hook: {kind: fixed, at_m: 0}
-  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}
-links:
-  - {liaison: rope, between: [hook, bob]}
-)";
+  std::ofstream(path_) << test::snatch("410000");
   ASSERT_EQ(run({}), kSuccess) << error_;
   EXPECT_NE(out_.find("not certain: the scene may be unstable in some poses or states;\n"
                       "            energy and K' + 2 Z' are watched during the run; a rate_hz of "

@@ -355,70 +355,47 @@ TEST(MotorRelease, KillOfTheLauncherAndTheSceneLeavesNoForce) {
   }
 }
 
-TEST(MotorRelease, KillOfTheRecorderTakesNoForceAwayAndWithAnotherNodeLeavesNone) {
+/// Kills a node that the force does not need: alone, then with another one.
+/// @param process  the present one of that node
+void expect_force_without(const std::string& program, pid_t (PressedKey::*process)() const) {
   for (const std::string board : kBoards) {
     PressedKey key(board);
     key.start_launcher();
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
     const pid_t sim = key.sim();
     const pid_t device = key.device();
-    const pid_t recorder = key.recorder();
+    const pid_t first = (key.*process)();
 
-    key.kill_all({recorder});
+    key.kill_all({first});
 
-    EXPECT_TRUE(has_ended(recorder));
-    key.await_press();  // by then another recorder runs
+    EXPECT_TRUE(has_ended(first));
+    key.await_press();  // by then another one runs
     EXPECT_EQ(key.sim(), sim);
     EXPECT_EQ(key.device(), device);
-    EXPECT_NE(key.recorder(), recorder);
+    EXPECT_NE((key.*process)(), first);
 
-    key.kill_all({key.recorder(), key.sim()});
-    key.expect_zero("record_node + sim_node");
+    key.kill_all({(key.*process)(), key.sim()});
+    key.expect_zero(program + " + sim_node");
     key.await_press();
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
 
-    key.kill_all({key.recorder(), key.device()});
-    key.expect_zero("record_node + device_node");
+    key.kill_all({(key.*process)(), key.device()});
+    key.expect_zero(program + " + device_node");
     key.await_press();
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
 
-    key.kill_all({key.launcher(), key.recorder()});
-    key.expect_zero("launcher + record_node");
+    key.kill_all({key.launcher(), (key.*process)()});
+    key.expect_zero("launcher + " + program);
     key.expect_ends();
   }
 }
 
+TEST(MotorRelease, KillOfTheRecorderTakesNoForceAwayAndWithAnotherNodeLeavesNone) {
+  expect_force_without("record_node", &PressedKey::recorder);
+}
+
 TEST(MotorRelease, KillOfTheViewTakesNoForceAwayAndWithAnotherNodeLeavesNone) {
-  for (const std::string board : kBoards) {
-    PressedKey key(board);
-    key.start_launcher();
-    if (HasFatalFailure()) return;
-    const pid_t sim = key.sim();
-    const pid_t device = key.device();
-    const pid_t view = key.view();
-
-    key.kill_all({view});
-
-    EXPECT_TRUE(has_ended(view));
-    key.await_press();  // by then another view runs
-    EXPECT_EQ(key.sim(), sim);
-    EXPECT_EQ(key.device(), device);
-    EXPECT_NE(key.view(), view);
-
-    key.kill_all({key.view(), key.sim()});
-    key.expect_zero("viz_node + sim_node");
-    key.await_press();
-    if (HasFatalFailure()) return;
-
-    key.kill_all({key.view(), key.device()});
-    key.expect_zero("viz_node + device_node");
-    key.await_press();
-    if (HasFatalFailure()) return;
-
-    key.kill_all({key.launcher(), key.view()});
-    key.expect_zero("launcher + viz_node");
-    key.expect_ends();
-  }
+  expect_force_without("viz_node", &PressedKey::view);
 }
 
 /// A shell ignores SIGQUIT in what it starts in the background, and so would the nodes.

@@ -251,14 +251,17 @@ TEST_P(DatagramFilter, LooksIntoWhatFindsAndAuthenticatesParticipants) {
     return submessage(0x15, 0x04, whole);
   };
   const auto text = [](BodyWriter& writer, std::uint32_t said) { writer.number32(said).fill(8); };
-  const auto announcement = [&](unsigned parameter, auto write) {
+  const auto parameter_of = [&](int writer_high, int writer_low, unsigned parameter, auto write) {
     BodyWriter value = body();
     write(value);
     BodyWriter payload = body();
     payload.octets({0, GetParam() ? 3 : 2, 0, 0}).number16(parameter);
     payload.number16(static_cast<unsigned>(value.bytes().size()));
     for (const std::uint8_t octet : value.bytes()) payload.octets({octet});
-    return data_of(1, 0xc2, payload.number16(1).number16(0));
+    return data_of(writer_high, writer_low, payload.number16(1).number16(0));
+  };
+  const auto announcement = [&](unsigned parameter, auto write) {
+    return parameter_of(1, 0xc2, parameter, write);
   };
   const auto properties = [&](BodyWriter& writer, std::uint32_t count, std::uint32_t length) {
     writer.number32(count);
@@ -299,13 +302,7 @@ TEST_P(DatagramFilter, LooksIntoWhatFindsAndAuthenticatesParticipants) {
   EXPECT_FALSE(passes(announcement(0x50, guid(1, 0xc2))));
 
   const auto endpoint = [&](unsigned parameter, auto write) {
-    BodyWriter value = body();
-    write(value);
-    BodyWriter payload = body();
-    payload.octets({0, GetParam() ? 3 : 2, 0, 0}).number16(parameter);
-    payload.number16(static_cast<unsigned>(value.bytes().size()));
-    for (const std::uint8_t octet : value.bytes()) payload.octets({octet});
-    return data_of(0, 0x3c2, payload.number16(1).number16(0));
+    return parameter_of(0, 0x3c2, parameter, write);
   };
   const auto texts = [&](std::uint32_t count, std::uint32_t length) {
     return [=](BodyWriter& writer) {

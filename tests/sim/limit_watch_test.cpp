@@ -7,31 +7,10 @@
 
 #include "sim_node/run/bound_text.h"
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/watched_scenes.h"
 
 namespace cordis::sim {
 namespace {
-
-/// A mass of 0.1 kg, 1000 steps per second; a link that is soft until it is drawn by 1 mm, then of
-/// the stiffness given.
-std::string snatch_text(const std::string& stiffness) {
-  return R"(cordis: 1
-name: snatch
-space: 1
-step: {rate_hz: 1000}
-liaisons:
-  rope:
-    states:
-      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}
-      taut: {stiffness_n_per_m: )" +
-         stiffness +
-         R"(, final: true}
-matter:
-  hook: {kind: fixed, at_m: 0}
-  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}
-links:
-  - {liaison: rope, between: [hook, bob]}
-)";
-}
 
 /// A key that moves nothing of it.
 const char* const kKey = R"(ports:
@@ -39,7 +18,7 @@ const char* const kKey = R"(ports:
 )";
 
 TEST(LimitWatch, KeepsTheLargestThatAMassHasHad) {
-  const auto loaded = loaded_scene_of(snatch_text("20000"));
+  const auto loaded = loaded_scene_of(test::snatch("20000"));
   Simulation& simulation = loaded->simulation;
   EventRoom events(1);
   loaded->limits.update(simulation.world());
@@ -71,7 +50,7 @@ links:
 TEST(LimitWatch, LetsGoWhereTheNumberComesToFour) {
   // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
   for (const bool has_key : {false, true}) {
-    const auto loaded = loaded_scene_of(snatch_text("410000") + (has_key ? kKey : ""));
+    const auto loaded = loaded_scene_of(test::snatch("410000") + (has_key ? kKey : ""));
     Simulation& simulation = loaded->simulation;
     EXPECT_FALSE(loaded->is_certain);
     EXPECT_TRUE(loaded->watches_number);
@@ -92,7 +71,7 @@ TEST(LimitWatch, LetsGoWhereTheNumberComesToFour) {
 }
 
 TEST(LimitWatch, LeavesASceneAloneWhoseNumberStaysBelowFour) {
-  const auto loaded = loaded_scene_of(snatch_text("390000"));  // K dt^2 / m = 3.9
+  const auto loaded = loaded_scene_of(test::snatch("390000"));  // K dt^2 / m = 3.9
   EventRoom events(1);
   for (int tick = 0; tick < 100; ++tick) {
     ASSERT_TRUE(loaded->simulation.advance(1, events));
@@ -129,7 +108,7 @@ links:
 }
 
 TEST(Divergence, IsReportedWithTheLinkAndTheReason) {
-  const auto loaded = loaded_scene_of(snatch_text("900000"));
+  const auto loaded = loaded_scene_of(test::snatch("900000"));
   Simulation& simulation = loaded->simulation;
   EventRoom events(1);
   EXPECT_EQ(simulation.failure(), "");

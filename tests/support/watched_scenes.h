@@ -25,6 +25,27 @@ liaisons:
                 {{"step", step}, {"start", start}, {"liaisons", liaisons}, {"links", links}});
 }
 
+/// A mass of 0.1 kg, 1000 steps per second; a link that is soft until it is drawn by 1 mm, then of
+/// the stiffness given.
+inline std::string snatch(const std::string& stiffness) {
+  return filled(R"(cordis: 1
+name: snatch
+space: 1
+step: {rate_hz: 1000}
+liaisons:
+  rope:
+    states:
+      slack: {viscosity_n_s_per_m: 1, exits: [{to: taut, when: elongation_m > 0.001}]}
+      taut: {stiffness_n_per_m: <stiffness>, final: true}
+matter:
+  hook: {kind: fixed, at_m: 0}
+  bob: {kind: mass, mass_kg: 0.1, at_m: 0.1, velocity_m_per_s: 1}
+links:
+  - {liaison: rope, between: [hook, bob]}
+)",
+                {{"stiffness", stiffness}});
+}
+
 /// A ball that falls so fast on a contact that its viscosity throws it up again.
 inline constexpr const char* kFallOnContact = R"(cordis: 1
 name: fall
