@@ -141,6 +141,7 @@ bool is_fragment(const Submessage& part) noexcept {
   const std::optional<std::size_t> payload = behind_parameters(part, kFields);
   if (!payload || part.sequence(12) < 1 || !has_writer(part)) return false;
   if (is_of_discovery(part)) return false;  // what it sends is short
+  if (part.has(0x04)) return false;         // a key alone: Fast DDS copies it from nowhere
   const std::uint64_t number = part.number32(20);
   const std::uint64_t count = part.number16(24);
   const std::uint64_t length = part.number16(26);

@@ -224,6 +224,9 @@ TEST_P(DatagramFilter, PassesNoValuesThatFastDdsCannotFollow) {
   EXPECT_FALSE(
       passes(submessage(0x12, 0, body().fill(8).sequence(1).number32(0).number32(0).fill(4))));
 
+  Bytes of_a_key = fragment(1, 1, 100, 250, 100);
+  of_a_key[1] |= 0x04;
+  EXPECT_FALSE(passes(of_a_key));
   EXPECT_FALSE(passes(fragment(0, 1, 100, 250, 100)));
   EXPECT_FALSE(passes(fragment(2, 3, 100, 250, 300))) << "more than there are";
   EXPECT_FALSE(passes(fragment(1, 17, 100, 25'000, 1'700)));
