@@ -132,6 +132,8 @@ class Person {
     });
     const off = (await this.controls()).filter((control) => control.off && control.usable);
     for (const { name } of off) await this.use(name);
+    const isHidden = ({ name, usable }) => name.startsWith('#keys ') && !usable; // a second press of '?' closes the list of keys
+    if ((await this.controls()).some(isHidden)) await this.use('#tools button[data-key="?"]');
   }
 
   /** Picks a mass, so that its controls are shown: that of a key, or one in the view. */
