@@ -76,8 +76,10 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 const config::Place& referrer, bool force,
                                 config::Problems& problems) {
   PlannedScene planned = plan_scene(launch.resolve(path).string(), referrer, problems);
-  if (!problems.has_errors()) check_devices(launch, planned.scene, problems);
-  if (!problems.has_errors()) check_stability(planned.scene, force, problems);
+  if (!problems.has_errors()) {
+    check_devices(launch, planned.scene, problems);
+    check_stability(planned.scene, force, problems);
+  }
   return std::move(planned.scene);
 }
 

@@ -14,6 +14,7 @@
 #include "cli/check/check_report.h"
 #include "cli/check/check_verb.h"
 #include "cli/exit_code.h"
+#include "sim_node/sim_config.h"
 #include "tests/cli/captured_run.h"
 #include "tests/support/filled.h"
 #include "tests/support/watched_scenes.h"
@@ -475,11 +476,13 @@ links: [{liaison: pad, between: [")"
 /// A launch file beside the scene, with a device of rate 10 Hz and this viscosity.
 class CheckedLaunch : public Checked {
  protected:
-  CheckedLaunch() {
-    write("100", R"(  - {liaison: holder, between: [key, bob]}
+  static constexpr const char* kKey = R"(  - {liaison: holder, between: [key, bob]}
 ports:
   key: {device: keyboard, axes: [0], role: mass, coupling: direct, at_m: [0]}
-)");
+)";
+
+  CheckedLaunch() {
+    write("100", kKey);
     scene_ = path_;
     device_ = path_ + ".device.yaml";
     path_ += ".launch.yaml";
@@ -553,6 +556,28 @@ TEST_F(CheckedLaunch, ADeviceThatThePortIsTooStiffForIsRefusedAsByARun) {
                 "port 'key' is as stiff as 1000 N/m, and the device 'keyboard' supports "),
             0u);
   EXPECT_EQ(json["ports"][0]["devices"][0]["supported"], false);
+}
+
+TEST_F(CheckedLaunch, WhatIsWrongOfDeviceAndSceneStandsInBothReportsInTheSameWords) {
+  struct Case {
+    const char* rate;
+    const char* viscosity;
+    std::size_t problem_count;
+  };
+  for (const Case& tried :
+       {Case{"100", "200", 0}, Case{"100", "2", 1}, Case{"50", "200", 1}, Case{"50", "2", 2}}) {
+    path_ = std::exchange(scene_, path_);
+    write(tried.rate, kKey);
+    path_ = std::exchange(scene_, path_);
+    launch("realtime", tried.viscosity);
+    config::Problems problems_of_run;
+    const config::Launch launch = config::load_launch(path_, {}, problems_of_run);
+
+    sim::read_sim_config(launch, launch.nodes.at(0), problems_of_run);
+
+    EXPECT_EQ(problems_of_run.all().size(), tried.problem_count) << problems_of_run.text();
+    EXPECT_EQ(problems_of_run.text(), check().problems.text());
+  }
 }
 
 TEST_F(CheckedLaunch, ADeviceThatNeedsAFasterAnswerThanAPeriodIsAWarningInRealTime) {
