@@ -33,22 +33,20 @@ class ScalarLeapfrog {
     weight_step_ = scene.gravity * dt * dt;
     for (const Mat& mat : scene.mats) {
       position_.push_back(mat.position);
-      delayed_.push_back(mat.position - dt * mat.velocity);
+      moved_.push_back(dt * mat.velocity);
+      extrapolated_.push_back(mat.position - dt * mat.velocity);
     }
-    extrapolated_ = delayed_;
     force_ = scalar_forces(scene, position_, extrapolated_);
     for (std::size_t i = 0; i < scene.mats.size(); ++i) {
       if (scene.mats[i].kind != MatKind::kMass) continue;
-      const Vec3 before = position_[i] - delayed_[i];
-      const Vec3 pushed = this->pushed(i) - (1.0 - retention(i)) * before;
-      delayed_[i] = position_[i] - (before - 0.5 * pushed);
+      const Vec3 pushed = this->pushed(i) - (1.0 - retention(i)) * moved_[i];
+      moved_[i] -= 0.5 * pushed;
     }
   }
 
   /// A port is where the outside puts it, before a step.
   void move_port(std::size_t port, const Vec3& position) {
-    delayed_[port] = position_[port];
-    extrapolated_[port] = delayed_[port];
+    extrapolated_[port] = position_[port];
     position_[port] = position;
   }
   void step() {
@@ -57,10 +55,9 @@ class ScalarLeapfrog {
       if (scene_.mats[i].kind != MatKind::kMass) continue;
       Vec3 pushed = this->pushed(i);
       if (scene_.has_medium()) pushed -= (1.0 - retention(i)) * (position_[i] - extrapolated_[i]);
-      const Vec3 next = position_[i] + ((position_[i] - delayed_[i]) + pushed);
+      moved_[i] += pushed;
       extrapolated_[i] = position_[i] - 0.5 * pushed;
-      delayed_[i] = position_[i];
-      position_[i] = next;
+      position_[i] += moved_[i];
     }
   }
 
@@ -78,7 +75,7 @@ class ScalarLeapfrog {
   const NetworkDescription& scene_;
   Vec3 weight_step_;
   std::vector<Vec3> position_;
-  std::vector<Vec3> delayed_;
+  std::vector<Vec3> moved_;  // in the last step
   std::vector<Vec3> extrapolated_;
   std::vector<Vec3> force_;
 };

@@ -116,8 +116,9 @@ void Leapfrog::feel_ports(const WorldState& world) noexcept {
 void Leapfrog::begin_damping(WorldState& world) noexcept {
   const MatArray& mats = world.mats;
   for (std::uint32_t i = 0; i < mats.count(); ++i) {
-    const Vec3 before = started_ || !mats.is_mass(i) ? mats.delayed_at_rest(i) : extrapolated(i);
-    column(velocity_, i) = mats.position(i) - before;
+    const Vec3 before = mats.is_mass(i) ? extrapolated(i) : mats.delayed_at_rest(i);
+    column(velocity_, i) =
+        started_ && mats.is_mass(i) ? mats.moved(i) : Vec3(mats.position(i) - before);
   }
   for (const std::uint32_t port : world.port_inputs.ports()) {
     column(velocity_, port) = mats.position(port) - mats.delayed(port);
@@ -145,8 +146,7 @@ std::uint32_t Leapfrog::advance_damped(WorldState& world, StepEnergy& energy) no
 /// dt v at the moment of the last forces [m].
 Vec3 Leapfrog::centred_displacement(const WorldState& world, std::uint32_t mat) const noexcept {
   if (!started_) return world.mats.position(mat) - extrapolated(mat);
-  const Vec3 delayed = world.mats.delayed(mat);
-  return (world.mats.position(mat) - delayed) - (delayed - extrapolated(mat));
+  return world.mats.moved(mat) - (world.mats.delayed(mat) - extrapolated(mat));
 }
 
 Energy Leapfrog::energy(WorldState& world) const noexcept {

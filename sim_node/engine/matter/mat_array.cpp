@@ -6,6 +6,13 @@
 #include "node/assert.h"
 
 namespace cordis::engine {
+namespace {
+
+bool carries_displacements(IntegratorKind integrator) noexcept {
+  return integrator == IntegratorKind::kCordis || integrator == IntegratorKind::kLeapfrog;
+}
+
+}  // namespace
 
 MatArray::MatArray(const NetworkDescription& description, const MatLayout& layout,
                    const MatBlocks& blocks)
@@ -15,7 +22,7 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
       position_(layout.value_count(description.mats.size()), 0.0),
       delayed_(position_.size(), 0.0),
       force_(position_.size(), 0.0),
-      moved_(description.integrator == IntegratorKind::kCordis ? position_.size() : 0, 0.0),
+      moved_(carries_displacements(description.integrator) ? position_.size() : 0, 0.0),
       columns_(layout.is_by_axis() ? 4 * description.mats.size() : 0, 0.0),
       dt2_over_mass_(description.mats.size(), 0.0),
       velocity_retention_(description.mats.size(), 1.0),
@@ -23,8 +30,7 @@ MatArray::MatArray(const NetworkDescription& description, const MatLayout& layou
       weight_step_(description.gravity * description.step * description.step),
       medium_viscosity_over_dt_(description.medium_viscosity / description.step),
       in_medium_(description.has_medium()) {
-  CORDIS_ASSERT(!layout.is_by_axis() || description.integrator == IntegratorKind::kCordis ||
-                description.integrator == IntegratorKind::kLeapfrog);
+  CORDIS_ASSERT(!layout.is_by_axis() || carries_displacements(description.integrator));
   const double dt = description.step;
 
   std::vector<Range> masses;
@@ -263,8 +269,10 @@ std::uint32_t MatArray::move_by(const AlignedVector<double>& displacement) noexc
   for (const Range& range : masses_) {
     for (std::size_t i = range.first; i < range.last; ++i) {
       const Vec3 now = vector(position_, static_cast<std::uint32_t>(i));
+      const Vec3 moved = Vec3::Map(displacement.data() + 4 * i);
       set(delayed_, i, now);
-      set(position_, i, now + Vec3::Map(displacement.data() + 4 * i));
+      set(position_, i, now + moved);
+      if (!moved_.empty()) set(moved_, i, moved);
     }
   }
   return count_non_finite();

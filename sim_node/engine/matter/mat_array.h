@@ -131,7 +131,7 @@ class MatArray {
   Vec3 position(std::uint32_t mat) const noexcept { return vector(position_, mat); }
   Vec3 delayed(std::uint32_t mat) const noexcept { return vector(delayed_, mat); }
   Vec3 force(std::uint32_t mat) const noexcept { return vector(force_, mat); }
-  /// x(n) - x(n-1) [m]; of `cordis` as it is carried, before it was rounded.
+  /// x(n) - x(n-1) [m]; of `cordis` and `leapfrog` as it is carried, before it was rounded.
   Vec3 moved(std::uint32_t mat) const noexcept {
     return moved_.empty() || !is_mass(mat) ? Vec3(position(mat) - delayed(mat))
                                            : vector(moved_, mat);
@@ -187,7 +187,7 @@ class MatArray {
   AlignedVector<double> position_;
   AlignedVector<double> delayed_;
   AlignedVector<double> force_;
-  AlignedVector<double> moved_;                // of masses [m]; empty unless `cordis`
+  AlignedVector<double> moved_;                // of masses [m]; empty unless `cordis` or `leapfrog`
   AlignedVector<double> columns_;              // x(n) for position() [m]; empty unless by axis
   AlignedVector<double> dt2_over_mass_;        // [s^2/kg], 0 unless a mass
   AlignedVector<double> velocity_retention_;   // 1 - dt Z / m

@@ -88,8 +88,8 @@ struct MassColumns {
   const double* dt2_over_mass = nullptr;       // dt^2 / m [s^2/kg], one per MAT
   const double* velocity_retention = nullptr;  // 1 - dt Z / m, with Z of the medium; one per MAT
   double* extrapolated = nullptr;  // x(n) - dt v(n), then that of n + 1; of `leapfrog` alone [m]
-  double* moved = nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `advance`
-                            // [m]
+  double* moved = nullptr;  // x(n) - x(n-1) before it was rounded, then that of n + 1; of `cordis`
+                            // and `leapfrog` [m]
   std::size_t axis_stride = 1;             // as of a MatLayout
   std::size_t axis_count = 3;              // so many components move; by axis alone
   alignas(32) double weight_step[4] = {};  // gravity * dt^2 [m]
@@ -125,7 +125,8 @@ using Delay = AdvanceResult (*)(const MassColumns& masses, const double* velocit
 /// The loops of one width. Those of a moment remember nothing for an account: `elastic` is 0 and
 /// `dissipated` the viscous power of these forces times dt, once. Those that extrapolate keep in
 /// `extrapolated` the velocity that dampers and medium see, v(n) = 1.5 v(n-1/2) - 0.5 v(n-3/2):
-/// x(n+1) = x(n) + (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2 - (1 - velocity retention) dt v(n).
+/// x(n+1) = x(n) + (x(n) - x(n-1)) + (dt^2 / m) f(n) + gravity dt^2 - (1 - velocity retention) dt v(n),
+/// where the displacement is carried as by Advance.
 struct StepKernel {
   AddLinkForces springs_1d = nullptr;  // no link has viscosity; distances are signed
   AddLinkForces spring_dampers_1d = nullptr;

@@ -304,18 +304,18 @@ struct AxisExtrapolation {
   double* position;
   double* delayed;
   double* extrapolated;
+  double* carried;
   const double* force;
   double weight_step;
 
   static AxisExtrapolation of_axis(const MassColumns& masses, std::size_t axis) noexcept {
     const std::size_t row = axis * masses.axis_stride;
     return {masses.position + row, masses.delayed + row, masses.extrapolated + row,
-            masses.force + row, masses.weight_step[axis]};
+            masses.moved + row,    masses.force + row,   masses.weight_step[axis]};
   }
   void step(const MassColumns& masses, std::size_t i, std::size_t part,
             AxisSums<Lanes>& sums) noexcept {
     const Row now = Lanes::load_any(position + i);
-    const Row moved = now - Lanes::load_any(delayed + i);
     Row kick = Lanes::load_any(force + i) * Lanes::load_any(masses.dt2_over_mass + i) +
                Lanes::every(weight_step);
     if constexpr (kMedium) {
@@ -324,7 +324,9 @@ struct AxisExtrapolation {
       kick = kick - seen * (Lanes::every(1.0) - retention);
       sums.product[part] = sums.product[part] + seen * seen;
     }
-    const Row next = now + (moved + kick);
+    const Row moving = Lanes::load_any(carried + i) + kick;
+    const Row next = now + moving;
+    Lanes::store_any(carried + i, moving);
     Lanes::store_any(delayed + i, now);
     Lanes::store_any(position + i, next);
     Lanes::store_any(extrapolated + i, now - Lanes::every(0.5) * kick);
@@ -333,14 +335,14 @@ struct AxisExtrapolation {
   /// @param in_place  sums by the place in the batch @return 0, or NaN if it is not finite
   double step_one(const MassColumns& masses, std::size_t i, double& in_place) noexcept {
     const double now = position[i];
-    const double moved = now - delayed[i];
     double kick = force[i] * masses.dt2_over_mass[i] + weight_step;
     if constexpr (kMedium) {
       const double seen = now - extrapolated[i];
       kick = kick - seen * (1.0 - masses.velocity_retention[i]);
       in_place = in_place + seen * seen;
     }
-    const double next = now + (moved + kick);
+    carried[i] += kick;
+    const double next = now + carried[i];
     delayed[i] = now;
     position[i] = next;
     extrapolated[i] = now - 0.5 * kick;
@@ -394,7 +396,6 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
 
   for (std::size_t i = masses.first; i < masses.last; ++i) {
     const Column position = Lanes::load_column(masses.position + 4 * i);
-    const Column moved = position - Lanes::load_column(masses.delayed + 4 * i);
     Column kick =
         Lanes::load_column(masses.force + 4 * i) * Lanes::broadcast(masses.dt2_over_mass[i]) +
         weight_step;
@@ -403,9 +404,10 @@ AdvanceResult extrapolate_masses(const MassColumns& masses) noexcept {
       kick = kick - seen * (one - Lanes::broadcast(masses.velocity_retention[i]));
       product = product + seen * seen;
     }
-    const Column moving = moved + kick;
+    const Column moving = Lanes::load_column(masses.moved + 4 * i) + kick;
     const Column next = position + moving;
 
+    Lanes::store_column(masses.moved + 4 * i, moving);
     Lanes::store_column(masses.delayed + 4 * i, position);
     Lanes::store_column(masses.position + 4 * i, next);
     Lanes::store_column(masses.extrapolated + 4 * i, position - half * kick);
