@@ -35,6 +35,29 @@ TEST(Plan, DistinguishesStableFromUnstable) {
   EXPECT_TRUE(unstable.stability.diverges());
 }
 
+TEST(Plan, OnlyWhatActsAtSomeTimesIsAContact) {
+  // a spring of K' = 0.1, and a link with states of K' = 0.01
+  NetworkDescription scene = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, std::sqrt(1e-5));
+  EXPECT_FALSE(plan_of(scene, 1.0).worst_contact.has_value());
+
+  const auto with_states = [&](const StateMachine& machine) {
+    scene.state_machines = {machine};
+    scene.state_links = {{0, 1, 0, 1.0}};
+    return plan_of(scene, 1.0).worst_contact;
+  };
+  Behaving held;
+  held.state(100.0);
+  EXPECT_FALSE(with_states(held.state_machine).has_value());
+  Behaving changing = held;
+  changing.exit(q(Quantity::kElongation) > 0.5, 1).state(50.0);
+  for (const StateMachine& machine : {contact(100.0), changing.state_machine}) {
+    const std::optional<plan::ContactGain> gain = with_states(machine);
+    ASSERT_TRUE(gain.has_value());
+    EXPECT_EQ(gain->liaison.kind, engine::LiaisonKind::kStateLink);
+    EXPECT_NEAR(gain->stiffness, 0.01, 1e-9);
+  }
+}
+
 TEST(Plan, BoundsTheViscosityOfTheBandByThatOfItsLinks) {
   // Z / K = 1e-4 s in every link: a vibration of 10 Hz has Z / m = w^2 1e-4, and 0.3 of the medium.
   NetworkDescription scene = string_in_space(20, 0.04, 1e-4);

@@ -1,6 +1,7 @@
 // tests/plan/program_enclosure_test.cpp -- values, slopes and steps of expressions.
 #include "sim_node/plan/stability/program_enclosure.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -140,6 +141,35 @@ TEST(ProgramEnclosure, OfANotIsOneNumberWhereItsArgumentIsSurelyZeroOrNot) {
   EXPECT_TRUE(is(value(0.0, 0.0), 1.0, 1.0));
   EXPECT_TRUE(is(value(-0.5, 0.5), 0.0, 1.0));
   EXPECT_TRUE(is(value(0.0, 0.5), 0.0, 1.0));
+}
+
+TEST(ProgramEnclosure, OfAComparisonHoldsExactlyWhatItCanBe) {
+  const plan::Interval intervals[] = {{-1.0, 0.0}, {0.0, 0.0}, {0.0, 1.0}, {1.0, 1.0},
+                                      {1.0, 2.0},  {2.0, 3.0}, {-1.0, 3.0}};
+  for (const Operation operation :
+       {Operation::kLess, Operation::kLessOrEqual, Operation::kGreater, Operation::kGreaterOrEqual,
+        Operation::kEqual, Operation::kNotEqual, Operation::kAnd, Operation::kOr}) {
+    const Program program = two(operation, q(Quantity::kDistance), q(Quantity::kSpeed)).program;
+    for (const plan::Interval& x : intervals) {
+      for (const plan::Interval& y : intervals) {
+        plan::Interval sampled{1.0, 0.0};
+        constexpr int kParts = 16;  // it meets every end of the others
+        for (int sample = 0; sample < (kParts + 1) * (kParts + 1); ++sample) {
+          engine::LinkQuantities now{};
+          now[static_cast<std::size_t>(Quantity::kDistance)] =
+              x.low + (x.high - x.low) * (sample % (kParts + 1)) / kParts;
+          now[static_cast<std::size_t>(Quantity::kSpeed)] =
+              y.low + (y.high - y.low) * (sample / (kParts + 1)) / kParts;
+          const double value = engine::value_of(program, now);
+          sampled = {std::min(sampled.low, value), std::max(sampled.high, value)};
+        }
+        const plan::Interval found = plan::enclosure_of(program, {x, y, 0.0, {}, {}}).value;
+        EXPECT_TRUE(found.low == sampled.low && found.high == sampled.high)
+            << "operation " << static_cast<int>(operation) << " of " << x.low << " to " << x.high
+            << " and " << y.low << " to " << y.high;
+      }
+    }
+  }
 }
 
 /// A condition that changes within the box, of the distance, of the speed or of both.

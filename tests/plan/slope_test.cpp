@@ -356,5 +356,36 @@ TEST(Slope, OfAParameterThatChangesIsThatOfItsWorstValue) {
   EXPECT_TRUE(of_place.uncertainty.has_value());
 }
 
+TEST(Slope, NamesTheVariablesAloneThatNothingBounds) {
+  const auto asked = [](std::uint32_t slot) {
+    Term term(0.0);
+    term.program.code = {{engine::Operation::kVariable, {}, 0.0, slot}};
+    return term;
+  };
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-4;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.1, Vec3(0.1, 0.0, 0.0))};
+  scene.variables.resize(3);
+  scene.variables[0].quantity = engine::VariableKind::kAwake;  // within 0 and 1
+  for (const std::size_t place : {1u, 2u}) {
+    scene.variables[place].quantity = engine::VariableKind::kPosition;
+    scene.variables[place].index = 1;
+    scene.variables[place].direction = Vec3::UnitX();
+  }
+  scene.state_links = {{0, 1, 0, 0.0}};
+  const auto named = [&](const Term& factor) {
+    scene.state_machines = {state_machine(0.0, expression_law(factor * q(Quantity::kElongation)))};
+    const std::optional<plan::Uncertainty> uncertainty = plan::liaison_graph(scene).uncertainty;
+    return uncertainty ? uncertainty->variables : std::vector<std::uint32_t>{};
+  };
+  using Slots = std::vector<std::uint32_t>;
+  EXPECT_EQ(named(Term(1.0) + asked(0)), Slots{});
+  EXPECT_EQ(named(asked(0) + asked(1)), Slots{1});
+  EXPECT_EQ(named(asked(2) + asked(0) * one(Operation::kSin, asked(1))), Slots{2});
+  EXPECT_EQ(named(one(Operation::kSin, asked(2)) * asked(0)), (Slots{2, 0}))
+      << "each alone is harmless, and it may drive apart";
+}
+
 }  // namespace
 }  // namespace cordis::test
