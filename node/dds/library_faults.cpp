@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <dlfcn.h>
+#include <fastdds/rtps/builtin/data/ReaderProxyData.h>
 #include <fastdds/rtps/common/CDRMessage_t.h>
 #include <fastdds/rtps/common/CacheChange.h>
 #include <fastdds/rtps/common/Guid.h>
@@ -16,6 +17,7 @@
 #include <fastdds/rtps/messages/RTPSMessageGroup.h>
 #include <fastdds/rtps/messages/RTPSMessageSenderInterface.hpp>
 #include <fastdds/rtps/writer/RTPSWriter.h>
+#include <fastdds/rtps/writer/ReaderProxy.h>
 #include <fastdds/rtps/writer/StatefulWriter.h>
 
 // Classes of Fast DDS that it does not publish: the member functions of them that are checked here.
@@ -61,6 +63,7 @@ struct OfLibrary {
                           rtps::CacheChange_t*);
   bool (*insert)(rtps::RTPSMessageGroup*, const rtps::GuidPrefix_t&, bool);
   int (*lose)(rtps::WriterProxy*, const rtps::SequenceNumber_t&);
+  bool (*update)(rtps::ReaderProxy*, const rtps::ReaderProxyData&);
 };
 
 template <class Function>
@@ -87,6 +90,7 @@ const OfLibrary& of_library() noexcept {
         found.insert);
     find("_ZN8eprosima8fastrtps4rtps11WriterProxy19lost_changes_updateERKNS1_16SequenceNumber_tE",
          found.lose);
+    find("_ZN8eprosima8fastrtps4rtps11ReaderProxy6updateERKNS1_15ReaderProxyDataE", found.update);
     return found;
   }();
   return kFound;
@@ -143,6 +147,14 @@ int rtps::WriterProxy::lost_changes_update(const SequenceNumber_t& first) {
   return lost;
 }
 
+/// Takes the new description of a reader. Reliability never changes [DDS 2.2.3]: a reader that describes another one
+/// stays what it was. Fast DDS 2.9.1 takes it without the timers of a reliable reader, and aborts at the next sample.
+bool rtps::ReaderProxy::update(const ReaderProxyData& said) {
+  const bool says_reliable =
+      said.m_qos.m_reliability.kind != eprosima::fastdds::dds::BEST_EFFORT_RELIABILITY_QOS;
+  return says_reliable == is_reliable() && of_library().update(this, said);
+}
+
 bool rtps::StatefulWriter::matched_reader_remove(const GUID_t& reader) {
   a_receiver_leaves = true;
   const bool removed = of_library().remove_reader(this, reader);
@@ -162,7 +174,8 @@ namespace cordis::dds {
 void take_out_library_faults() {
   const OfLibrary& found = of_library();
   if (found.encode == nullptr || found.remove_reader == nullptr ||
-      found.received_by_all == nullptr || found.insert == nullptr || found.lose == nullptr) {
+      found.received_by_all == nullptr || found.insert == nullptr || found.lose == nullptr ||
+      found.update == nullptr) {
     throw std::runtime_error(
         "this library of Fast DDS lacks functions that Cordis checks: install libfastrtps2.9");
   }

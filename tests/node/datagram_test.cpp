@@ -29,12 +29,14 @@
 
 #include "idl/gesture.h"
 #include "idl/scene.h"
+#include "idl/topics.h"
 #include "node/dds/reader.h"
 #include "node/dds/writer.h"
 #include "node/security/identity.h"
 #include "node/security/keyring.h"
 #include "tests/support/datagrams.h"
 #include "tests/support/eventually.h"
+#include "tests/support/foreign_reader.h"
 #include "tests/support/rounds.h"
 #include "tests/support/test_domain.h"
 #include "tests/support/test_seed.h"
@@ -337,6 +339,32 @@ TEST(APacketWithOneByteMore, EndsAParticipantOfFastDdsAndNoneOfCordis) {
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGABRT) << status;
   for (int i = 0; i < 100; ++i) {
     test::send_to_all(*packet);
+    session.has_force = session.has_position = session.has_frame = false;
+    ASSERT_TRUE(session.exchanges()) << i;
+  }
+}
+
+TEST(AReaderThatSaysItIsReliable, EndsNoWriterWhereItWasBestEffort) {
+  Session session(members());
+  ASSERT_TRUE(session.exchanges());
+  std::optional<RawTopic> frames;
+  for (const FoundWriter& found : session.view.writers())
+    if (found.topic.name == msg::TOPIC_FRAME) frames = found.topic;
+  ASSERT_TRUE(frames);
+  test::ForeignReaders readers("changed", frames->name, frames->type, frames->keyed);
+  const auto are_matched = [&](int count) {
+    return eventually([&] {
+      readers.send();
+      return session.frames.matched_count() == count;
+    });
+  };
+  readers.describe(1, false);
+  ASSERT_TRUE(are_matched(2)) << "besides that of the session";
+
+  readers.describe(1, true);
+  readers.describe(2, false);
+  ASSERT_TRUE(are_matched(3)) << "what was said before is known, too";
+  for (int i = 0; i < 10; ++i) {
     session.has_force = session.has_position = session.has_frame = false;
     ASSERT_TRUE(session.exchanges()) << i;
   }
