@@ -67,26 +67,41 @@ class SerialLine final : public Wire {
     cfsetspeed(&line, baud_);
     tcsetattr(file_, TCSANOW, &line);
     tcflush(file_, TCIOFLUSH);
-    return watch_arrivals();
+    watch_arrivals();
+    return true;
   }
 
   /// poll() of a line without input waits until a thread of the kernel has handed over what comes. That thread has
   /// ordinary priority, so on a busy machine a force loop would stall for 30 to 80 ms. An edge of epoll comes
-  /// from that thread, and asks for nothing.
+  /// from that thread, and asks for nothing. Where the system refuses such an epoll, poll() has to do.
   bool wait(std::chrono::nanoseconds at_most) noexcept override {
-    epoll_event event{};
-    const timespec limit = timespec_of(at_most);
-    return epoll_pwait2(arrivals_, &event, 1, &limit, nullptr) > 0;
+    if (arrivals_ >= 0) {
+      epoll_event event{};
+      const timespec limit = timespec_of(at_most);
+      const int found = epoll_pwait2(arrivals_, &event, 1, &limit, nullptr);
+      if (found >= 0 || (errno != ENOSYS && errno != EPERM)) return found > 0;
+      do_without_edges(errno);
+    }
+    return Wire::wait(at_most);
   }
 
  private:
   /// Anew for each line that is opened: the guardian keeps the one before for a moment longer.
-  bool watch_arrivals() noexcept {
+  void watch_arrivals() noexcept {
     if (arrivals_ >= 0) ::close(arrivals_);
     arrivals_ = epoll_create1(EPOLL_CLOEXEC);
     epoll_event event{};
     event.events = EPOLLIN | EPOLLET;
-    return epoll_ctl(arrivals_, EPOLL_CTL_ADD, file_, &event) == 0;
+    if (arrivals_ < 0 || epoll_ctl(arrivals_, EPOLL_CTL_ADD, file_, &event) != 0)
+      do_without_edges(errno);
+  }
+
+  void do_without_edges(int reason) noexcept {
+    if (arrivals_ >= 0) ::close(arrivals_);
+    arrivals_ = -1;
+    if (!std::exchange(is_warned_, true))
+      spdlog::warn("{} is read by poll(), which may hold up the force loop of a busy machine: {}",
+                   path_, std::strerror(reason));
   }
 
   /// Says why the line cannot be opened, when the reason is another than at the last try.
@@ -102,8 +117,9 @@ class SerialLine final : public Wire {
 
   std::string path_;
   speed_t baud_;
-  int arrivals_ = -1;  // an epoll of the line
-  int reason_ = 0;     // errno of the last try
+  int arrivals_ = -1;  // an epoll of the line; -1: poll() is used
+  bool is_warned_ = false;
+  int reason_ = 0;  // errno of the last try
   node::RepeatedEvent absences_{path_ + " was not there"};
   node::RepeatedEvent failures_{path_ + " could not be opened"};
 };
@@ -219,6 +235,8 @@ bool Wire::wait(std::chrono::nanoseconds at_most) noexcept {
 std::size_t Wire::receive(std::span<std::uint8_t> room, std::chrono::nanoseconds at_most) noexcept {
   if (file_ < 0 || (!may_have_more_ && !wait(at_most))) return 0;
   const ssize_t count = ::read(file_, room.data(), room.size());
+  // FIONREAD would say how much more there is. It waits for a lock of the line that the kernel's thread holds as it wakes
+  // this one.
   may_have_more_ = is_stream_ && count == static_cast<ssize_t>(room.size());
   if (count > 0) return static_cast<std::size_t>(count);
   const bool ended = count == 0 ? is_stream_ : errno != EAGAIN && errno != ECONNREFUSED;

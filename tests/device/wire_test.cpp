@@ -1,18 +1,53 @@
-// tests/device/wire_test.cpp -- what reaches a board over a line that takes no more.
+// tests/device/wire_test.cpp -- a line that takes no more, and one that no epoll watches.
 #include "device_node/drivers/wire.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/epoll.h>
 #include <unistd.h>
 
 #include "node/config/yaml_reader.h"
+#include "tests/support/captured_log.h"
+#include "tests/support/eventually.h"
+
+namespace {
+
+std::atomic<int> error_of_create = 0;  // 0: the system decides
+std::atomic<int> error_of_wait = 0;
+
+/// The function of the C library that this program has under the same name.
+template <class Function>
+Function* of_library(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+// Two functions of the C library, as the lines of this program call them.
+extern "C" int epoll_create1(int flags) noexcept {
+  if (error_of_create == 0) return of_library<decltype(epoll_create1)>("epoll_create1")(flags);
+  errno = error_of_create;
+  return -1;
+}
+
+extern "C" int epoll_pwait2(int file, epoll_event* events, int count, const timespec* limit,
+                            const sigset_t* signals) {
+  if (error_of_wait == 0)
+    return of_library<decltype(epoll_pwait2)>("epoll_pwait2")(file, events, count, limit, signals);
+  errno = error_of_wait;
+  return -1;
+}
 
 namespace cordis::device {
 namespace {
@@ -104,6 +139,45 @@ TEST_F(BlockedLine, TheReleaseFrameGoesBeforeAllThatWaits) {
   const Bytes all = read_until(3);
   ASSERT_GE(all.size(), 3u);
   EXPECT_EQ(Bytes(all.end() - 3, all.end()), (Bytes{0xa5, 0x5a, 0xff}));
+}
+
+/// A system that refuses an epoll, which a line does without.
+class LineWithoutEdges : public BlockedLine {
+ protected:
+  ~LineWithoutEdges() override { error_of_create = error_of_wait = 0; }
+
+  /// Opens the line twice. What a board sends arrives, and one line of the log says how it is read.
+  void expect_bytes_and_one_warning(const std::string& reason) {
+    const test::CapturedLog log;
+    for (const char sent : {'a', 'b'}) {
+      ASSERT_TRUE(wire_->open());
+      ASSERT_EQ(::write(master_, &sent, 1), 1);
+      std::array<std::uint8_t, 8> bytes{};
+      ASSERT_TRUE(test::eventually(
+          [&] { return wire_->receive(bytes, std::chrono::milliseconds(5)) == 1; }));
+      EXPECT_EQ(bytes[0], sent);
+      EXPECT_EQ(wire_->receive(bytes, std::chrono::nanoseconds(0)), 0u);
+    }
+    EXPECT_EQ(log.lines(""), wire_->address() +
+                                 " is read by poll(), which may hold up the force loop of a busy "
+                                 "machine: " +
+                                 reason + "\n");
+  }
+};
+
+TEST_F(LineWithoutEdges, IsReadByPollWhereTheSystemLacksTheWait) {
+  error_of_wait = ENOSYS;
+  expect_bytes_and_one_warning("Function not implemented");
+}
+
+TEST_F(LineWithoutEdges, IsReadByPollWhereTheWaitIsForbidden) {
+  error_of_wait = EPERM;
+  expect_bytes_and_one_warning("Operation not permitted");
+}
+
+TEST_F(LineWithoutEdges, IsReadByPollWhereTheProcessHasNoFileLeftToWatchIt) {
+  error_of_create = EMFILE;
+  expect_bytes_and_one_warning("Too many open files");
 }
 
 }  // namespace
