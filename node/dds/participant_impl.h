@@ -112,7 +112,8 @@ void apply(const TopicQos& row, Qos& qos) {
   }
   qos.data_sharing().off();
   qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+      row.sized_by_message ? eprosima::fastrtps::rtps::DYNAMIC_RESERVE_MEMORY_MODE
+                           : eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   // A keyed topic holds one instance per device or node; the default limits would reserve 10 of 100
   // MB frames.
   qos.resource_limits().max_instances = 64;

@@ -83,7 +83,8 @@ TopicQos qos_of(Topic topic, bool lockstep, bool standbys) noexcept {
               .transient_local = true,
               .history_depth = 256,
               .asynchronous = true,
-              .heartbeat_msec = 50};
+              .heartbeat_msec = 50,
+              .sized_by_message = true};
     case Topic::kCommand:
       return stream_qos(msg::TOPIC_COMMAND, 32);
     case Topic::kReply:

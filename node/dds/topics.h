@@ -35,6 +35,9 @@ struct TopicQos {
   /// The strongest of several writers of a key is read, until it has been silent for so long;
   /// 0: all are read.
   int exclusive_for_msec = 0;
+  /// Each sample has the memory of its message. Otherwise the largest of its type is reserved for
+  /// each, and pages that it has used stay.
+  bool sized_by_message = false;
 };
 
 /// What a reader asks of a reliable writer.

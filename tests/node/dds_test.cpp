@@ -1,6 +1,7 @@
 // tests/node/dds_test.cpp
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "idl/control.h"
 #include "idl/gesture.h"
@@ -736,6 +738,14 @@ TEST(WireVersion, OfAProcessStandsInItsUserData) {
   EXPECT_EQ(marked_wire_version(before), 0u) << "older than all versions";
   EXPECT_EQ(marked_wire_version(before + " wire x"), 0u);
   EXPECT_EQ(marked_wire_version(""), std::nullopt) << "another program";
+}
+
+/// A take of inputs has scenes with their files: the largest has 5 MB, and 256 messages are kept.
+TEST(Writer, OfInputsReservesNoRoomForTheLargest) {
+  Participant sim({test::own_domain(), "inputs", "sim"});
+  const std::size_t before = mallinfo2().hblkhd;
+  const Writer<msg::SceneInputs> inputs(sim, Topic::kInputs);
+  EXPECT_LT(mallinfo2().hblkhd, before + (std::size_t{64} << 20));
 }
 
 TEST(Writer, SaysThatDdsDidNotTakeAMessage) {
