@@ -52,20 +52,20 @@ void watch_guardian() noexcept {
 }  // namespace
 
 Device::Device(LoadedDevice device, dds::Participant& participant, dds::Participant& for_loop,
-               config::Clock clock, std::uint64_t epoch)
+               config::Clock clock, const Exchange::Series& series)
     : config_(std::move(device.config)),
       driver_(traced(std::move(device.driver), config_.trace, config_.layout)),
       for_loop_(for_loop),
       clock_(clock),
       description_(participant, dds::Topic::kDevice),
       roster_(participant),
-      series_{epoch, 0},
+      series_(series),
       phases_(config_.name, name_of_driver(config_, *driver_),
               clock == config::Clock::kLockstep
                   ? std::chrono::duration<double>(kLockstepPatience).count()
                   : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
-      status_(participant, msg::KIND_DEVICE_NODE, epoch, [this](msg::NodeStatus& status) {
+      status_(participant, msg::KIND_DEVICE_NODE, series.epoch, [this](msg::NodeStatus& status) {
         meter_.fill(status);
         if (meter_.phase() == Phase::kNeverConnected || meter_.phase() == Phase::kReplaced)
           status.text("driver " + name_of_driver(config_, *driver_) + ": " + status.text());
@@ -78,7 +78,7 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
             clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz * time_scale());
       }) {
   if (PointerPort* const port = driver_->pointer_port())
-    pointer_.emplace(participant, config_, *port, epoch);
+    pointer_.emplace(participant, config_, *port, series.epoch);
 }
 
 void Device::run() {

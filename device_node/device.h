@@ -27,10 +27,10 @@ class Device {
  public:
   /// @param participant  for all but the force loop
   /// @param for_loop     for the force loop alone
-  /// @param epoch        identifies this process on the wire
+  /// @param series       what identifies the samples of this process
   /// @throws std::runtime_error when DDS refuses.
   Device(LoadedDevice device, dds::Participant& participant, dds::Participant& for_loop,
-         config::Clock clock, std::uint64_t epoch);
+         config::Clock clock, const Exchange::Series& series);
 
   /// Returns after a stop. The calling thread becomes the loop thread. @throws as the constructor.
   void run();

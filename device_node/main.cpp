@@ -1,6 +1,8 @@
 // device_node/main.cpp -- the gesture process: one device of a session.
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
@@ -51,6 +53,13 @@ void limit_stop() {
   }).detach();
 }
 
+/// Samples that count as sent before the first one. A soak test begins shortly before 2^32, which a
+/// device at 1 kHz reaches after 50 days.
+std::uint64_t samples_before() {
+  const char* const text = std::getenv("CORDIS_SAMPLES_BEFORE");
+  return text == nullptr ? 0 : std::strtoull(text, nullptr, 10);
+}
+
 int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems) {
   cordis::device::LoadedDevice device =
       cordis::device::load_device(start.launch, *start.node, problems);
@@ -80,7 +89,8 @@ int run(const cordis::node::NodeStart& start, cordis::config::Problems& problems
         return cordis::node::nothing_to_do(command, cordis::msg::KIND_DEVICE_NODE);
       });
   commands.start();
-  cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock, start.epoch)
+  cordis::device::Device(std::move(device), participant, for_loop, start.launch.clock,
+                         {start.epoch, samples_before()})
       .run();
   return 0;
 }
