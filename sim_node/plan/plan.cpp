@@ -331,7 +331,7 @@ double min_viscosity_of(const LiaisonGraph& graph, double w) {
     if (edge.liaison.kind != LiaisonKind::kLink || edge.follows) return 0.0;
     if (edge.stiffness > 0.0) ratio = std::min(ratio, edge.viscosity / edge.stiffness);
   }
-  if (!graph.contacts.empty() || !graph.forces.empty() || !graph.maxwell_links.empty()) return 0.0;
+  if (!graph.contacts.empty() || !graph.forces.empty()) return 0.0;
   double of_medium = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
     if (graph.inverse_mass[i] > 0.0)
@@ -340,22 +340,17 @@ double min_viscosity_of(const LiaisonGraph& graph, double w) {
   return w * w * ratio + of_medium;
 }
 
-}  // namespace
-
-BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
-                      double frequency_hz) {
-  // A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the
-  // links, and what the medium adds. Where a link is a damper alone that says nothing, and the
-  // largest eigenvalue of M^-1 Z does.
-  const double w = 2.0 * std::numbers::pi * frequency_hz;
+/// A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the links, and what the
+/// medium adds. Where a link may be a damper alone that says nothing, and the largest eigenvalue of M^-1 Z does.
+double max_viscosity_of(const LiaisonGraph& graph, double w) {
   double ratio = 0.0;
   LiaisonGraph dampers = graph;
   for (Edge& edge : dampers.edges) {
-    if (edge.viscosity > 0.0) ratio = std::max(ratio, edge.viscosity / edge.stiffness);
+    ratio = std::max(ratio, edge.damping_ratio);
     edge.stiffness = 0.0;
   }
   for (ContactBound& contact : dampers.contacts) {
-    if (contact.viscosity > 0.0) ratio = std::max(ratio, contact.viscosity / contact.stiffness);
+    ratio = std::max(ratio, contact.damping_ratio);
     contact.stiffness = 0.0;
   }
   double of_medium = 0.0;
@@ -366,13 +361,111 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   }
   for (ForceBound& force : dampers.forces) force.stiffness = 0.0;
   const double of_dampers = 2.0 / edge_bound(dampers).step;  // 2 dt Z = 4
+  return std::min(w * w * ratio + of_medium, of_dampers);
+}
+
+/// Puts in the place of each Maxwell element the spring and the damper that it is to a vibration, with T = Z / K:
+/// K (w T)^2 / (1 + (w T)^2) and Z / (1 + (w T)^2). One whose parameters change may damp the most there is, K / 2 w.
+LiaisonGraph at_frequency(const engine::NetworkDescription& network, LiaisonGraph graph, double w) {
+  for (Edge& edge : graph.edges) {
+    if (edge.liaison.kind != LiaisonKind::kMaxwellLink) continue;
+    const engine::MaxwellLink& link = graph.maxwell_links[edge.liaison.index];
+    if (!(link.stiffness > 0.0)) continue;
+    const double turn = w * link.viscosity / link.stiffness;
+    const double share = std::isfinite(turn) ? turn * turn / (1.0 + turn * turn) : 1.0;
+    if (network.maxwell_links[edge.liaison.index].follows_variables()) {
+      edge.viscosity = std::min(link.viscosity, 0.5 * link.stiffness / w);
+      edge.damping_ratio = damping_ratio(edge.viscosity, 0.0);
+      continue;
+    }
+    edge.viscosity = std::isfinite(turn) ? link.viscosity / (1.0 + turn * turn) : 0.0;
+    edge.stiffness = link.stiffness * share;
+    edge.damping_ratio = damping_ratio(edge.viscosity, edge.stiffness);
+  }
+  return graph;
+}
+
+/// True if a liaison acts in the pose of the start, or always.
+bool acts_at_start(const engine::NetworkDescription& network, LiaisonId liaison) {
+  if (!comes_and_goes(network, liaison)) return true;
+  if (liaison.kind != LiaisonKind::kStateLink) return false;
+  const engine::StateLink& link = network.state_links[liaison.index];
+  return tangent_at_start(network.state_machines[link.state_machine], start_point(network, link))
+      .acts;
+}
+
+/// True if the integrator of a network moves by the forces of a moment what a liaison does, as `cordis` does.
+bool moves_as_cordis(const engine::NetworkDescription& network, const Edge& edge) {
+  const auto is_port = [&](std::uint32_t mat) {
+    return network.mats[mat].kind == engine::MatKind::kPort;
+  };
+  switch (network.integrator) {
+    case engine::IntegratorKind::kLeapfrog:
+      return edge.liaison.kind == LiaisonKind::kMaxwellLink;
+    case engine::IntegratorKind::kModal:
+      if (edge.liaison.kind == LiaisonKind::kLink)
+        return is_port(edge.mat_a) || is_port(edge.mat_b);
+      return acts_at_start(network, edge.liaison);
+    case engine::IntegratorKind::kImplicit:
+      return edge.liaison.kind != LiaisonKind::kLink && acts_at_start(network, edge.liaison);
+    case engine::IntegratorKind::kCordis:
+    case engine::IntegratorKind::kSymplectic4:
+      return false;
+  }
+  return false;
+}
+
+/// @param graph  at_frequency()
+MovedAsByCordis moved_as_by_cordis(const engine::NetworkDescription& network, LiaisonGraph graph,
+                                   double w) {
+  std::erase_if(graph.edges, [&](const Edge& edge) { return !moves_as_cordis(network, edge); });
+  const bool has_forces = network.integrator == engine::IntegratorKind::kModal ||
+                          network.integrator == engine::IntegratorKind::kImplicit;
+  if (!has_forces) graph.forces.clear();
+  if (graph.edges.empty() && graph.forces.empty()) return {};
+  graph.contacts.clear();  // they come and go: their energy counts
+  std::ranges::fill(graph.medium_viscosity, 0.0);
+  MovedAsByCordis part;
+  part.viscosity = max_viscosity_of(graph, w);
+  for (Edge& edge : graph.edges) edge.viscosity = 0.0;
+  for (ForceBound& force : graph.forces) force.viscosity = 0.0;
+  const double longest = edge_bound(graph).step;  // dt^2 K = 4
+  part.stiffness = std::min(4.0 / (longest * longest), w * w);
+  return part;
+}
+
+}  // namespace
+
+OscillatorError error_of(const BandEdge& edge, double viscosity, double step,
+                         engine::IntegratorKind integrator) {
+  const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
+  OscillatorError error = oscillator_error(w, viscosity, step, integrator, edge.as_by_cordis);
+  // A Maxwell element of w T = 1 damps by w^2 dt^2 / 12 too much; a damper and a spring do not.
+  if (error.oscillates) error.decay += edge.of_maxwell * w * w * step * step / 12.0;
+  return error;
+}
+
+BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
+                      double frequency_hz) {
+  const double w = 2.0 * std::numbers::pi * frequency_hz;
+  const LiaisonGraph at_edge = at_frequency(network, graph, w);
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
-  edge.viscosity = std::min(w * w * ratio + of_medium, of_dampers);
-  edge.min_viscosity = std::min(min_viscosity_of(graph, w), edge.viscosity);
-  edge.error = oscillator_error(w, edge.viscosity, network.step, network.integrator);
+  edge.viscosity = max_viscosity_of(at_edge, w);
+  edge.min_viscosity = std::min(min_viscosity_of(at_edge, w), edge.viscosity);
+  edge.as_by_cordis = moved_as_by_cordis(network, at_edge, w);
+  if (!network.maxwell_links.empty() && edge.viscosity > 0.0) {
+    LiaisonGraph maxwell = at_edge;
+    std::erase_if(maxwell.edges,
+                  [](const Edge& of) { return of.liaison.kind != LiaisonKind::kMaxwellLink; });
+    maxwell.contacts.clear();
+    maxwell.forces.clear();
+    std::ranges::fill(maxwell.medium_viscosity, 0.0);
+    edge.of_maxwell = std::min(max_viscosity_of(maxwell, w) / edge.viscosity, 1.0);
+  }
+  edge.error = error_of(edge, edge.viscosity, network.step, network.integrator);
   if (0.5 * edge.viscosity >= w && 0.5 * edge.min_viscosity < w)
-    edge.swinging = oscillator_error(w, edge.min_viscosity, network.step, network.integrator);
+    edge.swinging = error_of(edge, edge.min_viscosity, network.step, network.integrator);
   return edge;
 }
 

@@ -64,9 +64,17 @@ struct BandEdge {
   double min_viscosity = 0.0;  ///< Z / m of the vibration, at least [1/s]
   OscillatorError error;       ///< errors at the largest viscosity
 
+  /// What of the vibration the integrator moves as `cordis` does, at most: what acts at the start.
+  MovedAsByCordis as_by_cordis;
+  double of_maxwell = 0.0;  ///< the part of the viscosity that may be that of Maxwell elements
+
   /// The errors with the least of it, where one vibration of that frequency may creep and another one swing.
   std::optional<OscillatorError> swinging;
 };
+
+/// The errors of that vibration with such a viscosity at another step.
+OscillatorError error_of(const BandEdge& edge, double viscosity, double step,
+                         engine::IntegratorKind integrator);
 
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz);

@@ -29,7 +29,7 @@ double largest_step(const BandEdge& edge, engine::IntegratorKind integrator, dou
   double high = creeps ? 2.0 / w : limit_step(w * w, edge.viscosity);
   for (int n = 0; n < 60; ++n) {
     const double step = 0.5 * (low + high);
-    const OscillatorError reached = oscillator_error(w, edge.viscosity, step, integrator);
+    const OscillatorError reached = error_of(edge, edge.viscosity, step, integrator);
     const bool within = reached.*applies && std::abs(error(reached)) <= tolerance;
     (within ? low : high) = step;
   }

@@ -148,6 +148,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.set = index;
   side.bounded = slope.bounded;
   side.variation = slope.variation;
+  side.damping_ratio = slope.damping_ratio;
   side.at_start = bounds.at_start;
   graph.contacts.push_back(side);
 
@@ -320,10 +321,11 @@ void add_bend(const NetworkDescription& network, std::uint32_t index, LiaisonGra
   const double both = 1.0 / bend.length_ab + 1.0 / bend.length_bc;
   const double at_ab = both / bend.length_ab;
   const double at_bc = both / bend.length_bc;
-  graph.edges.push_back(
-      {bend.mat_a, bend.mat_b, at_ab * stiffness, at_ab * viscosity, id, true, at_ab * variation});
-  graph.edges.push_back(
-      {bend.mat_b, bend.mat_c, at_bc * stiffness, at_bc * viscosity, id, true, at_bc * variation});
+  const double ratio = max_damping_ratio(network, bend, graph.reach);
+  graph.edges.push_back({bend.mat_a, bend.mat_b, at_ab * stiffness, at_ab * viscosity, id, true,
+                         at_ab * variation, ratio});
+  graph.edges.push_back({bend.mat_b, bend.mat_c, at_bc * stiffness, at_bc * viscosity, id, true,
+                         at_bc * variation, ratio});
 }
 
 void add_maxwell_link(const NetworkDescription& network, std::uint32_t index, LiaisonGraph& graph) {
@@ -510,8 +512,10 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
                       network.maxwell_links.size() + 2 * network.bends.size());
   std::uint32_t index = 0;
   for (const engine::Link& link : network.links) {
-    graph.edges.push_back(
-        {link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index++}});
+    Edge edge{link.mat_a, link.mat_b, link.stiffness, link.viscosity, {LiaisonKind::kLink, index}};
+    edge.damping_ratio = damping_ratio(link.viscosity, link.stiffness);
+    graph.edges.push_back(edge);
+    ++index;
   }
   graph.reach = reach_of(network, reach_factor);
   const Reach& reach = graph.reach;
@@ -534,7 +538,8 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
                            slope.viscosity,
                            {LiaisonKind::kStateLink, index++},
                            slope.bounded,
-                           slope.variation});
+                           slope.variation,
+                           slope.damping_ratio});
   }
   for (index = 0; index < network.maxwell_links.size(); ++index)
     add_maxwell_link(network, index, graph);

@@ -34,9 +34,10 @@ struct Edge {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   LiaisonId liaison;
-  bool bounded = true;     ///< false: its law has no largest slope of its own; see Reach
-  double variation = 0.0;  ///< Slope::variation [N/m]
-  bool follows = false;    ///< a parameter follows variables: it may be less than it is here
+  bool bounded = true;         ///< false: its law has no largest slope of its own; see Reach
+  double variation = 0.0;      ///< Slope::variation [N/m]
+  double damping_ratio = 0.0;  ///< Slope::damping_ratio [s]
+  bool follows = false;        ///< a parameter follows variables: it may be less than it is here
 };
 
 /// A driven force on a MAT that depends on its place or velocity, with the largest slopes it can have.
@@ -61,6 +62,7 @@ struct ContactBound {
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
   bool bounded = true;             ///< as Edge::bounded
   double variation = 0.0;          ///< variation of one pair, as Edge::variation [N/m]
+  double damping_ratio = 0.0;      ///< as Edge::damping_ratio [s]
   std::uint32_t at_start = 0;      ///< the most partners of any mass of the set at the start
   bool follows = false;            ///< as Edge::follows
   bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run

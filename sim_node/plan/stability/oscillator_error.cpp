@@ -1,6 +1,7 @@
 // sim_node/plan/stability/oscillator_error.cpp
 #include "sim_node/plan/stability/oscillator_error.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "node/assert.h"
@@ -107,6 +108,35 @@ OscillatorError oscillator_error(double angular_frequency, double viscosity, dou
   error.pitch = reached / frequency - 1.0;
   const double decay = -0.5 * std::log1p(roots.product - 1.0) / step;
   error.decay = rate > 0.0 ? decay / rate - 1.0 : decay / frequency;
+  return error;
+}
+
+/// `cordis` puts the pitch off by its share of the stiffness, and by its own viscosity. To first order the errors of
+/// both add up.
+OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
+                                 IntegratorKind integrator, const MovedAsByCordis& part) {
+  CORDIS_ASSERT(part.stiffness >= 0.0 && part.viscosity >= 0.0);
+  OscillatorError error = oscillator_error(angular_frequency, viscosity, step, integrator);
+  if (integrator == IntegratorKind::kCordis) return error;
+  if (part.stiffness == 0.0 && part.viscosity == 0.0) return error;
+  const double square = angular_frequency * angular_frequency;
+  const double share = std::min(part.stiffness / square, 1.0);
+  const double damped = std::min(part.viscosity, viscosity);
+  const OscillatorError undamped_one = oscillator_error(angular_frequency, 0.0, step);
+  const OscillatorError damped_one = oscillator_error(angular_frequency, damped, step);
+  if (error.creeps) {
+    if (damped_one.creeps) error.creep += damped_one.creep;
+    return error;
+  }
+  error.oscillates = error.oscillates && undamped_one.oscillates && damped_one.oscillates;
+  if (!error.oscillates) return {};
+  error.pitch += damped_one.pitch - undamped_one.pitch;
+  error.decay += damped_one.decay;
+  if (integrator != IntegratorKind::kModal) return error;
+  // Forces that are held for a step, which others have in their own error.
+  const double of_dampers = viscosity > 0.0 ? damped / viscosity : 0.0;
+  error.pitch += share * undamped_one.pitch;
+  error.decay += (share + of_dampers) * square * step * step / 12.0;
   return error;
 }
 

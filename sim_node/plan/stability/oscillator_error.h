@@ -25,6 +25,17 @@ OscillatorError oscillator_error(
     double angular_frequency, double viscosity, double step,
     engine::IntegratorKind integrator = engine::IntegratorKind::kCordis);
 
+/// What of an oscillation an integrator moves as `cordis` does, beside what it moves by its own scheme.
+struct MovedAsByCordis {
+  double stiffness = 0.0;  ///< K / m of it [1/s^2], >= 0
+  double viscosity = 0.0;  ///< Z / m of it [1/s], >= 0
+};
+
+/// The error of an integrator, and what `cordis` adds to it for a part of the oscillation.
+/// @param angular_frequency, viscosity  of the whole oscillation
+OscillatorError oscillator_error(double angular_frequency, double viscosity, double step,
+                                 engine::IntegratorKind integrator, const MovedAsByCordis& part);
+
 /// An interval of pitch in cents, hundredths of a semitone.
 double cents(double relative_pitch_error);
 

@@ -104,6 +104,17 @@ LinearBounds linear_bounds(const engine::NetworkDescription& network,
   return bounds;
 }
 
+double max_damping_ratio(const engine::NetworkDescription& network, const engine::Bend& bend,
+                         const Reach& reach) {
+  if (!bend.has_states()) return damping_ratio(bend.viscosity, bend.stiffness);
+  double most = 0.0;
+  for (const engine::LinkState& state : network.state_machines[bend.state_machine].states) {
+    const LinearBounds bounds = linear_bounds(state, reach);
+    most = std::max(most, damping_ratio(bounds.viscosity.high, bounds.stiffness.low));
+  }
+  return most;
+}
+
 double max_stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point,
                      const Reach& reach) {
   const engine::LinkState& state = state_machine.states[state_machine.start];

@@ -24,6 +24,11 @@ LinearBounds linear_bounds(const engine::NetworkDescription& network, const engi
 LinearBounds linear_bounds(const engine::NetworkDescription& network,
                            const engine::MaxwellLink& link, const Reach& reach);
 
+/// The most that Z is over K in one of the states of a bend [s]; infinite where one is viscous and may have no
+/// stiffness.
+double max_damping_ratio(const engine::NetworkDescription& network, const engine::Bend& bend,
+                         const Reach& reach);
+
 /// The most that a state machine stores at a point in the state of its start [J], at any values of the variables.
 /// For a spring it is twice that. 0 where nothing bounds it.
 double max_stored_in(const engine::StateMachine& state_machine, const engine::LawPoint& point,

@@ -206,6 +206,7 @@ Slope slope_of(const engine::LinkState& state, double rest_length, bool turns, c
   if (slope.uncertainty == nullptr && drives_motion(state, where, rest_length, speed, reach)) {
     slope.uncertainty = kDrivesMotion;
   }
+  slope.damping_ratio = damping_ratio(slope.viscosity, slope.stiffness - slope.variation);
   if (std::isfinite(state.force_limit)) {
     slope.variation = std::max(slope.variation, slope.stiffness);  // it is flat beyond
   }
@@ -236,6 +237,12 @@ bool acts_at(const engine::LinkState& state, double tension) {
 }
 
 }  // namespace
+
+double damping_ratio(double viscosity, double least_stiffness) noexcept {
+  if (!(viscosity > 0.0)) return 0.0;
+  return least_stiffness > 0.0 ? viscosity / least_stiffness
+                               : std::numeric_limits<double>::infinity();
+}
 
 bool is_of_variables(const char* uncertainty) noexcept {
   if (uncertainty == nullptr) return false;
@@ -301,6 +308,8 @@ Slope with_friction(Slope slope, const engine::Friction& friction) noexcept {
   slope.variation = std::max(slope.variation, friction.stiffness) + followed * slope.stiffness;
   slope.stiffness = std::max(slope.stiffness, friction.stiffness) + followed * slope.stiffness;
   slope.viscosity = std::max(slope.viscosity, friction.viscosity) + followed * slope.viscosity;
+  slope.damping_ratio =
+      std::max(slope.damping_ratio, damping_ratio(friction.viscosity, friction.stiffness));
   return slope;
 }
 
@@ -313,6 +322,7 @@ Slope with_friction(const Slope& slope, const engine::StateMachine& state_machin
     largest.variation = std::max(largest.variation, one.variation);
     largest.stiffness = std::max(largest.stiffness, one.stiffness);
     largest.viscosity = std::max(largest.viscosity, one.viscosity);
+    largest.damping_ratio = std::max(largest.damping_ratio, one.damping_ratio);
   }
   return largest;
 }
@@ -342,6 +352,7 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
+    largest.damping_ratio = std::max(largest.damping_ratio, slope.damping_ratio);
     largest.bounded = largest.bounded && slope.bounded;
     // Such a state holds only where its exits let it: its slope beyond is no uncertainty.
     const bool may_end = slope.uncertainty == kPullsWhereEndsMeet &&

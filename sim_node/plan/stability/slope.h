@@ -16,6 +16,9 @@ struct Slope {
   bool bounded = true;     ///< false: they hold within the Reach alone
   /// By how much the slope along the liaison varies in one of its states [N/m]: 0 for a spring.
   double variation = 0.0;
+  /// The most that the viscosity is over the stiffness in one of its states [s]; infinite where one is viscous and may
+  /// have no stiffness.
+  double damping_ratio = 0.0;
   /// Why nothing bounds them, not even the Reach; null: something does.
   const char* uncertainty = nullptr;
 };
@@ -26,6 +29,9 @@ inline constexpr const char* kMayDriveApart =
     "what its law asks for may make it drive its ends apart";
 inline constexpr const char* kMayDriveMotion =
     "what its law asks for may make it drive the motion by a viscosity below 0";
+
+/// Slope::damping_ratio of this viscosity and at least this stiffness [s].
+double damping_ratio(double viscosity, double least_stiffness) noexcept;
 
 /// True if a Slope::uncertainty is due to variables that the law asks for.
 bool is_of_variables(const char* uncertainty) noexcept;
