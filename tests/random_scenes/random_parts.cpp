@@ -6,6 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "tests/random_scenes/random_motion.h"
+#include "tests/random_scenes/random_numbers.h"
+
 namespace cordis::test {
 namespace {
 
@@ -13,10 +16,14 @@ namespace {
 class PartWriter {
  public:
   PartWriter(std::uint32_t seed, int space, PartLaws laws)
-      : random_(seed ^ 0x7ed55d16U), space_(space), laws_(laws) {}
+      : random_(seed ^ 0x7ed55d16U),
+        motion_(seed ^ 0x428a2f98U),
+        ports_(seed ^ 0x71374491U),
+        space_(space),
+        laws_(laws) {}
 
   RandomParts lines() {
-    if (between(0.0, 1.0) > 1.0 / 6.0) return {};
+    if (between(0.0, 1.0) > 0.25) return {};
     write_part();
     write_uses();
     if (laws_ == PartLaws::kAll) write_contacts();
@@ -83,18 +90,39 @@ class PartWriter {
     const std::string at_hub = place(0.02);
     const std::string at_tip = place(0.1);
     const double radius = between(0.01, 0.03);
-    const char* hub = chance(0.2) ? "fixed" : "mass";
-    const std::string of_hub = hub[0] == 'm' ? ", mass_kg: $heavy" : "";
-    lines_.parts = fmt::format(R"(parts:
+    const bool is_fixed = chance(0.2);
+    leads_ = laws_ != PartLaws::kSprings && motion_.chance(0.2);
+    const std::string hub = leads_     ? "fixed" + random_drive_of_position(motion_, space_, 0.02)
+                            : is_fixed ? "fixed, at_m: " + at_hub
+                                       : "mass, mass_kg: $heavy, at_m: " + at_hub;
+    const std::string start = motion_.chance(0.25) ? random_start(motion_, space_) : "";
+    const std::string port = perhaps_port();
+    lines_.parts =
+        fmt::format(R"(parts:
   piece:
     parameters: {{light: {:.4g}, heavy: $light}}
     matter:
-      hub: {{kind: {}, at_m: {}{}}}
-      tip: {{kind: mass, at_m: {}, ball: {{mass_kg: $light, radius_m: {:.4g}}}}}
-    links:
+      hub: {{kind: {}}}
+      tip: {{kind: mass, at_m: {}, ball: {{mass_kg: $light, radius_m: {:.4g}}}{}}}
+{}    links:
       - {{liaison: of_part, between: [hub, tip], name: arm}}
-)",
-                               mass, hub, at_hub, of_hub, at_tip, radius);
+{})",
+                    mass, hub, at_tip, radius, start, port, port.empty() ? "" : kLinkOfPort);
+  }
+
+  /// In two parts of five a port that holds the tip by a spring.
+  std::string perhaps_port() {
+    has_port_ = ports_.chance(0.4);
+    if (!has_port_) return {};
+    const bool gives_forces = laws_ == PartLaws::kSprings || ports_.chance(0.4);
+    lines_.liaisons += fmt::format("  of_finger: {{kind: spring, stiffness_n_per_m: {:.4g}}}\n",
+                                   ports_.decades(5.0, 1000.0));
+    const char* more = gives_forces ? ", mass_kg: 0.05" : "";
+    if (!gives_forces && ports_.chance(0.4)) more = ", coupling: direct";
+    const char* where[] = {"0", "[0, 0.1], along: y", "[0, 0.1, 0], along: y"};
+    return fmt::format(
+        "    ports:\n      finger: {{device: keys, axes: [0], role: {}, at_m: {}{}}}\n",
+        gives_forces ? "liaison" : "mass", where[space_ - 1], more);
   }
 
   void write_uses() {
@@ -117,8 +145,9 @@ class PartWriter {
     std::string use = "part: piece";
     if (space_ > 1) use += ", translate_m: " + shift + turned;
     if (chance(0.5)) use += fmt::format(", parameters: {{heavy: {:.4g}}}", heavy);
-    if (chance(0.5)) use += ", velocity_m_per_s: " + speed;
-    if (chance(0.3)) use += spun;
+    std::string thrown = chance(0.5) ? ", velocity_m_per_s: " + speed : "";
+    if (chance(0.3)) thrown += spun;
+    use += thrown + perhaps_driven(thrown.empty());
     if (copies > 1) {
       use += fmt::format(", repeat: {{count: {}{}}}", copies,
                          space_ == 1 ? std::string(", layout_translate_m: [0.1, 0]")
@@ -133,12 +162,21 @@ class PartWriter {
           "  - {{liaison: to_part, between: [\"pieces[0..{}].tip\", \"pieces[1..{}].tip\"]}}\n",
           copies - 2, copies - 1);
     }
-    lines_.signals = R"(  pace: {of: pieces, quantity: momentum, axis: x}
-  strain: {of: pieces.arm, quantity: distance, take: mean}
-)";
-    if (space_ == 2) lines_.signals += "  turn: {of: pieces, quantity: angular_momentum}\n";
-    if (space_ == 3)
-      lines_.signals += "  turn: {of: pieces, quantity: angular_momentum, axis: z}\n";
+    const char* body = is_moved_ ? "p" : "pieces";  // what is moved has no momentum
+    lines_.signals = fmt::format("  pace: {{of: {}, quantity: momentum, axis: x}}\n", body);
+    lines_.signals += "  strain: {of: pieces.arm, quantity: distance, take: mean}\n";
+    if (space_ == 1) return;
+    lines_.signals += fmt::format("  turn: {{of: {}, quantity: angular_momentum{}}}\n", body,
+                                  space_ == 3 ? ", axis: z" : "");
+  }
+
+  /// Half of the parts without a port are pushed as a whole, or moved where nothing of it has a velocity.
+  std::string perhaps_driven(bool is_at_rest) {
+    if (laws_ == PartLaws::kSprings || has_port_ || leads_ || motion_.chance(0.5)) return {};
+    const bool may_move = is_at_rest && lines_.parts.find("velocity_m_per_s") == std::string::npos;
+    const std::string drive = random_drive_of_part(motion_, space_, may_move);
+    is_moved_ = drive.find("displacement_m") != std::string::npos;
+    return drive;
   }
 
   void write_contacts() {
@@ -149,9 +187,17 @@ class PartWriter {
     lines_.signals += "  knock: {of: p, by: pieces.tip, quantity: contact_force, axis: x}\n";
   }
 
+  static constexpr const char* kLinkOfPort =
+      "      - {liaison: of_finger, between: [finger, tip]}\n";
+
   std::mt19937 random_;
+  RandomNumbers motion_;  // of starts and drives
+  RandomNumbers ports_;
   int space_;
   PartLaws laws_;
+  bool has_port_ = false;
+  bool leads_ = false;     // its hub goes along a function of time
+  bool is_moved_ = false;  // all of it
   RandomParts lines_;
 };
 

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "tests/random_scenes/random_motion.h"
+#include "tests/random_scenes/random_numbers.h"
 #include "tests/random_scenes/random_parts.h"
 
 namespace cordis::test {
@@ -36,11 +38,16 @@ class SceneWriter {
         random_of_bodies_(seed ^ 0x165667b1U),
         random_of_shells_(seed ^ 0x27d4eb2fU),
         random_of_parameters_(seed ^ 0x68e31da4U),
-        random_of_still_matter_(seed ^ 0x9e3779b9U),
+        random_of_still_matter_(seed ^ 0x3c6ef372U),
         random_of_hollows_(seed ^ 0x94d049bbU),
         random_of_rest_(seed ^ 0xbf58476dU),
         random_of_formulas_(seed ^ 0xff51afd7U),
-        random_of_places_(seed ^ 0x2127599bU) {
+        random_of_places_(seed ^ 0x2127599bU),
+        starts_(seed ^ 0xa54ff53aU),
+        leads_(seed ^ 0x510e527fU),
+        asking_(seed ^ 0x9b05688cU),
+        links_asked_(seed ^ 0x1f83d9abU),
+        obstacles_(seed ^ 0x5be0cd19U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -56,29 +63,32 @@ class SceneWriter {
     if (matter_ == Matter::kAnything) perhaps_in_a_medium();
     write_port();
     perhaps_hold_the_body();
+    if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     const std::uint32_t links = 1 + below(count_ + 2);
     for (std::uint32_t l = 0; l < links; ++l) add_link(l);
     if (matter_ != Matter::kModes && chance(0.35)) add_set();
     if (matter_ != Matter::kModes && chance(0.3)) add_surfaces();
-    if (matter_ != Matter::kModes && !freezes_ && count_ > 1) add_bends();
     if (matter_ == Matter::kAnything) perhaps_add_lively_law();
     if (matter_ == Matter::kAnything) perhaps_add_changing_link();
     if (matter_ == Matter::kAnything) perhaps_add_formulas();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
+    if (matter_ != Matter::kPotentials) perhaps_lead_a_mass();
     RandomParts added;
     if (matter_ != Matter::kModes) added = random_parts(seed_, space_, laws_of_parts());
     if (space_ > 1) perhaps_add_still_matter(added.parts.empty());
-    return head_ + world() + perhaps_settle() + parts_ + added.parts + "liaisons:\n" + liaisons_ +
-           added.liaisons + "matter:\n" + masses_ + added.matter +
+    const std::string world_text = world();
+    return head_ + world_text + perhaps_settle() + parts_ + added.parts + "liaisons:\n" +
+           liaisons_ + added.liaisons + "matter:\n" + masses_ + added.matter +
            (port_.empty() ? "" : "ports:\n" + port_) + "links:\n" + links_ + added.links +
            R"(signals:
   lively: {quantity: kinetic_energy}
   middle: {of: p, quantity: center_of_mass, axis: x}
   fastest: {of: p, quantity: speed, take: largest}
   thrust: {of: p, quantity: force, axis: x, take: sum}
-)" + added.signals;
+)" + signals_ +
+           added.signals;
   }
 
  private:
@@ -139,12 +149,21 @@ step: {{rate_hz: {}, integrator: {}{}}}
       text += "]";
     }
     if (may_change && field_between(0.0, 1.0) < 0.1) text = "gravity_m_per_s2: " + field(10.0);
+    if (may_change && asking_.chance(0.06)) text = "gravity_m_per_s2: " + asking_field(10.0);
     if (matter_ == Matter::kAnything && chance(0.2)) {
-      text += fmt::format("{}viscosity_n_s_per_m: {:.4g}", text.empty() ? "" : ", ",
-                          decades(1e-4, 0.3));
-      if (may_change && field_between(0.0, 1.0) < 0.4 && !has_no_medium_)
-        text += ", flow_m_per_s: " + field(1.0);
+      const double viscosity = decades(1e-4, 0.3);
+      const std::string formula = random_viscosity(asking_, viscosity);
+      text += text.empty() ? "" : ", ";
+      text += "viscosity_n_s_per_m: ";
+      text += may_change && asking_.chance(0.3) ? formula : fmt::format("{:.4g}", viscosity);
+      if (may_change && field_between(0.0, 1.0) < 0.4 && !has_no_medium_) {
+        const std::string flow = field(1.0);
+        text += ", flow_m_per_s: " + (asking_.chance(0.5) ? asking_field(1.0) : flow);
+      }
     }
+    if (text.find("changed") != std::string::npos) signals_ += "  changed: {quantity: changes}\n";
+    if (text.find("place_of_wall") != std::string::npos)
+      signals_ += "  place_of_wall: {of: wall, quantity: position, axis: x}\n";
     return text.empty() ? "" : "world: {" + text + "}\n";
   }
 
@@ -167,6 +186,23 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return text + "]";
   }
 
+  /// Formulas that ask for signals, up to this size. Half of them ask for none of motion.
+  std::string asking_field(double size) {
+    const bool of_motion = asking_.chance(0.5);
+    std::string text = "[";
+    for (int axis = 0; axis < space_; ++axis) {
+      const double most = asking_.between(-size, size);
+      const std::string formula = random_asking_formula(asking_, of_motion);
+      text += fmt::format("{}\"{:.4g} * {}\"", axis > 0 ? ", " : "", most, formula);
+    }
+    return text + "]";
+  }
+
+  /// In this share of the cases matter starts by formulas of number and place.
+  std::string perhaps_start_by_formula(double share) {
+    return starts_.chance(share) ? random_start(starts_, space_) : "";
+  }
+
   void write_masses() {
     const double speed = chance(0.3) ? 0.0 : decades(0.01, 1.0);
     const double one_mass = decades(0.001, 0.1);
@@ -182,10 +218,11 @@ step: {{rate_hz: {}, integrator: {}{}}}
     }
     masses_ =
         fmt::format("  wall: {{kind: fixed, at_m: {}, ball: {{radius_m: 0.05}}}}\n", place(0.2));
-    masses_ += fmt::format(
-        "  p: {{kind: points, at_m: [{}], mass_kg: [{}], velocity_m_per_s: [{}], radius_m: "
-        "{:.4g}}}\n",
-        places, weights, speeds, between(0.02, 0.1));
+    std::string start = perhaps_start_by_formula(0.08);
+    if (start.find("velocity_m_per_s") == std::string::npos)
+      start += fmt::format(", velocity_m_per_s: [{}]", speeds);
+    masses_ += fmt::format("  p: {{kind: points, at_m: [{}], mass_kg: [{}]{}, radius_m: {:.4g}}}\n",
+                           places, weights, start, between(0.02, 0.1));
   }
 
   double drive_between(double low, double high) {
@@ -224,6 +261,25 @@ step: {{rate_hz: {}, integrator: {}{}}}
     } else if (choice < 0.25) {
       masses_.insert(masses_.size() - 2, ", driven: {force_n: " + function_of_time(0.05) + "}");
     }
+  }
+
+  /// In a tenth of the scenes a MAT goes along a function of time. A mass hangs on it, or it touches all.
+  void perhaps_lead_a_mass() {
+    if (!leads_.chance(0.1)) return;
+    const std::string drive = random_drive_of_position(leads_, space_, 0.2);
+    const double stiffness = leads_.decades(1.0, 1000.0);
+    masses_ += fmt::format("  led: {{kind: {}, ball: {{radius_m: 0.03}}{}}}\n",
+                           leads_.chance(0.7) ? "fixed" : "mass", drive);
+    if (matter_ == Matter::kModes || leads_.chance(0.5)) {
+      liaisons_ += fmt::format(
+          "  leads: {{kind: spring_damper, stiffness_n_per_m: {0:.4g}, viscosity_n_s_per_m: "
+          "{1:.4g}}}\n",
+          stiffness, 1e-5 * stiffness);
+      links_ += "  - {liaison: leads, between: [led, \"p[0]\"]}\n";
+      return;
+    }
+    liaisons_ += fmt::format("  leads: {{stiffness_n_per_m: {:.4g}, pulls: false}}\n", stiffness);
+    links_ += "  - {liaison: leads, between_sets: [led, p], rest_m: 0.1, range_m: 0.1}\n";
   }
 
   double place_between(double low, double high) {
@@ -484,8 +540,26 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return low + (high - low) * static_cast<double>(random_of_variables_()) / 4294967296.0;
   }
 
+  /// Adds what conditions of later links may ask a link for.
+  void add_asked(const std::string& link, std::initializer_list<const char*> words) {
+    links_to_ask_.emplace_back();
+    for (const char* word : words) links_to_ask_.back().push_back(link + "." + word);
+  }
+
+  /// A condition over another link or a bend; in half of the cases none.
+  std::string asked_of_links() {
+    if (links_to_ask_.empty() || links_asked_.chance(0.4)) return {};
+    const auto& words =
+        links_to_ask_[links_asked_.below(static_cast<std::uint32_t>(links_to_ask_.size()))];
+    const std::string& word = words[links_asked_.below(static_cast<std::uint32_t>(words.size()))];
+    const double limit = links_asked_.decades(0.003, 1.0);
+    return links_asked_.chance(0.5) ? fmt::format("abs({}) > {:.4g}", word, limit)
+                                    : fmt::format("{} < {:.4g}", word, limit);
+  }
+
   /// A condition over something outside the link: time, a MAT, a port, another link, a signal.
   std::string asked_outside() {
+    if (std::string asked = asked_of_links(); !asked.empty()) return asked;
     const std::string mat = fmt::format("p[{}]", random_of_variables_() % count_);
     const std::string more = variable_between(0.0, 1.0) < 0.5 ? ">" : "<";
     const double length = variable_between(-0.15, 0.15);
@@ -603,8 +677,18 @@ step: {{rate_hz: {}, integrator: {}{}}}
     if (has_rest && chance(0.5)) {
       more = fmt::format(", rest_m: {:.4g}", space_ == 1 ? between(-0.2, 0.3) : between(0.0, 0.3));
     }
-    if (law.find("states:") != std::string::npos)
-      more += fmt::format(", name: s{}", links_with_states_++);
+    std::string name = fmt::format("l{}", l);  // of the liaison: that of a link without one
+    if (law.find("states:") != std::string::npos) {
+      name = fmt::format("s{}", links_with_states_++);
+      more += ", name: " + name;
+      add_asked(name, {"distance_m", "elongation_m", "force_n", "rest_length_m", "age_s"});
+    } else if (law.find("maxwell") != std::string::npos) {
+      name = fmt::format("m{}", l);
+      more += ", name: " + name;
+      add_asked(name, {"distance_m", "speed_m_per_s"});
+    } else {
+      add_asked(name, {"distance_m", "elongation_m", "speed_m_per_s", "force_n"});
+    }
     links_ +=
         fmt::format("  - {{liaison: l{}, between: [\"{}\", \"{}\"]{}}}\n", l, a, mat_but(a), more);
   }
@@ -690,6 +774,11 @@ step: {{rate_hz: {}, integrator: {}{}}}
     liaisons_ += "  of_bends: " + law + "}\n";
     if (count_ > 2 && bend_between(0.0, 1.0) < 0.7) links_ += "  - {liaison: of_bends, along: p}\n";
     links_ += "  - {liaison: of_bends, between: [wall, \"p[0]\", \"p[1]\"]}\n";
+    if (law.find("states:") != std::string::npos) {
+      add_asked("of_bends[0]", {"angle_rad", "bend_rad", "rest_angle_rad", "moment_n_m", "age_s"});
+    } else {
+      add_asked("of_bends[0]", {"angle_rad", "bend_rad", "speed_rad_per_s", "moment_n_m"});
+    }
   }
 
   /// A bend that yields, and snaps or comes back.
@@ -706,15 +795,15 @@ step: {{rate_hz: {}, integrator: {}{}}}
                                                             : ", rest: rest_rad + 0.5 * bend_rad";
     const double yield = bend_between(0.02, 1.0);
     const double softer = stiffness * bend_between(0.05, 1.2);
+    const std::string asked = perhaps_asking_outside(fmt::format("abs(bend_rad) > {:.4g}", yield));
     return fmt::format(
         "{{kind: bending, states: {{"
-        "whole: {{stiffness_n_m_per_rad: {:.4g}{}{}, exits: [{{to: bent, when: abs(bend_rad) > "
-        "{:.4g}{}}}]}}, "
+        "whole: {{stiffness_n_m_per_rad: {:.4g}{}{}, exits: [{{to: bent, when: \"{}\"{}}}]}}, "
         "bent: {{stiffness_n_m_per_rad: {:.4g}, exits: ["
         "{{to: cut, when: abs(angle_rad) > {:.4g} or moment_n_m > {:.4g}}}, "
         "{{to: whole, when: \"age_s > {:.4g} and falling(speed_rad_per_s)\"}}]}}, "
         "cut: {{final: true}}}}",
-        stiffness, viscosity, own_rest, yield, fold, softer, yield + bend_between(0.05, 2.0),
+        stiffness, viscosity, own_rest, asked, fold, softer, yield + bend_between(0.05, 2.0),
         softer, bend_between(0.001, 0.1));
   }
 
@@ -994,7 +1083,8 @@ step: {{rate_hz: {}, integrator: {}{}}}
           mass, center.substr(2), count);
       links.clear();
     }
-    if (!links.empty()) masses_ += "  more: {" + body + punctual + links + "}\n";
+    if (!links.empty())
+      masses_ += "  more: {" + body + punctual + links + perhaps_start_by_formula(0.3) + "}\n";
     liaisons_ +=
         fmt::format("  of_body: {{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}\n",
                     chosen(5.0, 3000.0));
@@ -1099,6 +1189,8 @@ step: {{rate_hz: {}, integrator: {}{}}}
         body += space_ == 2 ? fmt::format(", spin_rad_per_s: {:.4g}", turn)
                             : fmt::format(", spin_rad_per_s: [1, {:.4g}, 0]", turn);
       }
+    } else {
+      body += perhaps_start_by_formula(0.5);
     }
     masses_ += "  shell: {" + body + "}\n";
     liaisons_ += fmt::format(
@@ -1273,15 +1365,46 @@ step: {{rate_hz: {}, integrator: {}{}}}
           point(), point());
       masses_ += "  still: {part: nail, fixed: true}\n";
     } else {
-      masses_ +=
-          fmt::format("  still: {{kind: string, count: 3, from_m: {}, to_m: {}, fixed: true}}\n",
-                      point(), point());
+      const std::string from = point();
+      masses_ += "  still: {" + obstacle(from, point()) + ", fixed: true}\n";
+      if (obstacles_.chance(0.6)) touch_obstacle();
     }
     liaisons_ += fmt::format(
         "  hanger: {{kind: spring_damper, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: 0}}\n",
         std::pow(10.0, between(0.0, 2.0)));
     links_ += fmt::format("  - {{liaison: hanger, between: [\"p[0]\", \"still{}[1]\"]}}\n",
                           is_part ? ".x" : "");
+  }
+
+  /// A string, a crystal, a beam or a pack of balls, without `fixed`.
+  std::string obstacle(const std::string& first_end, const std::string& last_end) {
+    const double spacing = obstacles_.between(0.02, 0.06);
+    switch (obstacles_.below(4)) {
+      case 0:
+        return fmt::format("kind: string, count: 3, from_m: {}, to_m: {}", first_end, last_end);
+      case 1:
+        return fmt::format(
+            "kind: lattice, structure: {}, spacing_m: {:.4g}, corner_m: {}, counts: {}",
+            space_ == 3 ? "fcc" : "square", spacing, first_end,
+            space_ == 3 ? "[2, 1, 1]" : "[3, 2]");
+      case 2:
+        return fmt::format("kind: beam, cells: 2, from_m: {}, to_m: {}, height_m: {:.4g}{}",
+                           first_end, last_end, spacing,
+                           space_ == 3 ? fmt::format(", width_m: {:.4g}", spacing) : "");
+      default:
+        return fmt::format(
+            "kind: pack, ball: {{radius_m: 0.01}}, region: {{center_m: {}, radius_m: {:.4g}}}, "
+            "count: 4, seed: 1",
+            first_end, 0.03 + spacing);
+    }
+  }
+
+  /// The masses touch the obstacle.
+  void touch_obstacle() {
+    const double stiffness = obstacles_.decades(5.0, 3000.0);
+    liaisons_ +=
+        fmt::format("  of_obstacle: {{stiffness_n_per_m: {:.4g}, pulls: false}}\n", stiffness);
+    links_ += "  - {liaison: of_obstacle, between_sets: [p, still], rest_m: 0.06, range_m: 0.06}\n";
   }
 
   void add_surfaces() {
@@ -1329,6 +1452,11 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_rest_;          // likewise
   std::mt19937 random_of_formulas_;      // likewise
   std::mt19937 random_of_places_;        // likewise
+  RandomNumbers starts_;
+  RandomNumbers leads_;
+  RandomNumbers asking_;       // fields that ask for signals
+  RandomNumbers links_asked_;  // by conditions
+  RandomNumbers obstacles_;
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses
@@ -1336,13 +1464,15 @@ step: {{rate_hz: {}, integrator: {}{}}}
   Matter matter_ = Matter::kAnything;
   std::uint32_t count_ = 1;
   bool has_port_ = false;
-  std::uint32_t links_with_states_ = 0;  // that have been written; each has a name
+  std::uint32_t links_with_states_ = 0;                 // that have been written; each has a name
+  std::vector<std::vector<std::string>> links_to_ask_;  // what later conditions ask each link for
   std::string head_;
   std::string parts_;
   std::string masses_;
   std::string port_;
   std::string liaisons_;
   std::string links_;
+  std::string signals_;
 };
 
 }  // namespace
