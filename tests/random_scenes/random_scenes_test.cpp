@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <memory>
@@ -11,14 +13,18 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
 #include "sim_node/checks/partner_watch.h"
 #include "sim_node/checks/settling.h"
+#include "sim_node/checks/start_state.h"
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/plan/plan.h"
@@ -875,6 +881,59 @@ TEST(RandomScenes, HaveOneHashOnAllWidthsAndAfterRestore) {
         EXPECT_EQ(*hash, which->state_hash()) << to_string(width) << " " << named(seed);
       }
     }
+  }
+}
+
+/// A folder of its own for files that a test writes.
+class StateFolder {
+ public:
+  StateFolder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("cordis_random_states_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~StateFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  StateFolder(const StateFolder&) = delete;
+  StateFolder& operator=(const StateFolder&) = delete;
+  std::string file() const { return (path_ / "state").string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// One scene in four is enough, for each is read twice.
+TEST(RandomScenes, GoOnFromASavedStateAsIfTheyHadRunOn) {
+  const StateFolder folder;
+  for (const std::uint32_t seed : seeds()) {
+    if (seed % 4 != 0) continue;
+    const scene::Scene scene = scene_of(seed);
+    const int period = static_cast<int>(std::lround(scene.step_rate_hz / scene.gesture_rate_hz));
+    const int saved_at = (50 / period + 1) * period;
+    World world = world_of(scene.network);
+    for (int n = 1; n <= saved_at; ++n) {
+      play(scene, world, n);
+      world.step();
+    }
+    std::ofstream(folder.file()) << sim::state_file_text(scene, world.snapshot());
+    config::Problems problems;
+    const std::string text = random_scene_text(seed) + "start_state: " + folder.file() + "\n";
+    scene::Scene again = scene::load_scene_text(text, "seed", problems);
+    config::Problems refusals;
+    if (!problems.has_errors()) sim::settle(again, refusals);
+    sim::read_start_state(again, problems);
+    ASSERT_FALSE(problems.has_errors()) << problems.text() << text;
+    World other = world_of(again.network);
+    other.restore(*again.start_state);
+    for (World* which : {&world, &other}) {
+      for (int n = saved_at + 1; n <= saved_at + 50; ++n) {
+        play(scene, *which, n);
+        which->step();
+      }
+    }
+    EXPECT_EQ(world.state_hash(), other.state_hash()) << named(seed);
   }
 }
 
