@@ -82,6 +82,17 @@ TEST(StartTangent, IsNotSureWhereFrictionThatIsSolvedHoldsTheStart) {
   scene.integrator = engine::IntegratorKind::kLeapfrog;
   EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
 
+  // One that only pushes and just touches sticks on one side.
+  scene.state_machines[0].states[0].stiffness = 10.0;
+  scene.state_machines[0].states[0].pulls = false;
+  const double distance = scene.mats[1].position.x() - scene.mats[0].position.x();
+  scene.state_links[0].rest_length = distance;
+  EXPECT_TRUE(std::isinf(StartTangent(scene).diverging_step()));
+
+  scene.state_links[0].rest_length = 0.9 * distance;  // it is away
+  EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.02, 1e-6);
+
+  scene.state_machines[0] = state_machine(0.0);
   scene.state_machines[0].states[0].dissipation = engine::Power{-0.1, 0.5};  // it drives
   EXPECT_NEAR(StartTangent(scene).diverging_step(), 0.02, 1e-6);
 }

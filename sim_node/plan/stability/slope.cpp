@@ -525,6 +525,8 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
                  (state.pushes || tangent.tension > margin) &&
                  std::abs(tangent.tension) < state.force_limit - margin;
   const bool has_viscous_root = is_root(state.dissipation);
+  const bool may_stick =
+      has_viscous_root && std::get<engine::Power>(state.dissipation).coefficient > 0.0;
   const bool bends = !has_root && !has_viscous_root;
   if (!tangent
            .acts) {  // it gives way across, where it is pressed, and on one side of where it touches
@@ -533,6 +535,7 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
                         state.pulls ? state.force_limit : 0.0);
     };
     const bool touches = std::abs(limited(elongation) - tangent.tension) <= margin;
+    tangent.sticks = touches && may_stick;
     tangent.tension = state.pushes ? std::clamp(tangent.tension, -state.force_limit, 0.0) : 0.0;
     tangent.jumps = jumps(limited, elongation);
     if (tangent.jumps) return tangent;
@@ -541,7 +544,7 @@ Tangent tangent_at_start(const engine::StateMachine& state_machine, const engine
     return tangent;
   }
   tangent.stiffness = stiffness;
-  tangent.sticks = has_viscous_root && std::get<engine::Power>(state.dissipation).coefficient > 0.0;
+  tangent.sticks = may_stick;
   tangent.jumps = jumps(elastic, elongation) || (bends && jumps(viscous, 0.0));
   if (tangent.jumps) {
     tangent.stiffness = state.stiffness;
