@@ -1,9 +1,14 @@
 // tests/bench/bench_scenes.cpp
 #include "tests/bench/bench_scenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <initializer_list>
+#include <numeric>
 #include <random>
+#include <vector>
 
 namespace cordis::bench {
 
@@ -156,6 +161,19 @@ std::shared_ptr<const Network> pack(int dimension, std::uint32_t balls) {
   set.rest_length = kDiameter;
   network.sets = {set};
   return std::make_shared<const Network>(network);
+}
+
+NetworkDescription with_shuffled_mats(NetworkDescription network) {
+  std::vector<std::uint32_t> place(network.mats.size());
+  std::iota(place.begin(), place.end(), 0U);
+  std::shuffle(place.begin(), place.end(), std::mt19937_64(1990));
+  const std::vector<engine::Mat> mats = network.mats;
+  for (std::size_t i = 0; i < mats.size(); ++i) network.mats[place[i]] = mats[i];
+  for (engine::Link& link : network.links) {
+    link.mat_a = place[link.mat_a];
+    link.mat_b = place[link.mat_b];
+  }
+  return network;
 }
 
 std::shared_ptr<const Network> net_of_links(int dimension, LinkKind kind, std::uint32_t side) {

@@ -19,6 +19,9 @@ std::shared_ptr<const engine::Network> melt(int cells = 20, double temperature =
 /// @param balls  as many at least, in a square or a cube
 std::shared_ptr<const engine::Network> pack(int dimension, std::uint32_t balls);
 
+/// Numbers the MATs of a network in another order, so that its links fit in no run.
+engine::NetworkDescription with_shuffled_mats(engine::NetworkDescription network);
+
 /// What the links of a net are.
 enum LinkKind : int {
   kLinear = 0,

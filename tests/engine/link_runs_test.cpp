@@ -2,7 +2,10 @@
 // the same network whose links are gathered.
 #include "sim_node/engine/links/link_runs.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -15,9 +18,16 @@ namespace {
 
 using engine::layout_of;
 using engine::LinkArrangement;
+using engine::LinkOrder;
 using engine::LinkRun;
+using engine::order_in_runs;
 
 constexpr std::uint32_t kEmpty = LinkArrangement::kEmpty;
+
+std::vector<Link> ascending(std::vector<Link> links) {
+  for (Link& link : links) link = engine::ascending(link, 3);
+  return links;
+}
 
 /// In runs where they may be, with room behind them.
 LinkArrangement arranged(const std::vector<Link>& links) {
@@ -42,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Widths, LinkRuns, testing::ValuesIn(engine::supported_v
 TEST(LinkArrangement, HasEachLinkInOneRowAndInItsOrder) {
   for (std::uint32_t seed = 0; seed < 300; ++seed) {
     RandomRuns random(seed);
-    const std::vector<Link> links = random.links(97);
+    const std::vector<Link> links = ascending(random.links(97));
     const LinkArrangement rows = arranged(links);
 
     std::uint32_t next = 0;
@@ -90,12 +100,78 @@ TEST(LinkArrangement, GathersWhatIsTooShortOrDescends) {
   EXPECT_TRUE(rows.runs[0].is_gathered);
 }
 
+TEST(LinkArrangement, GathersLinksInLessThanHalfOfTheRows) {
+  std::vector<Link> every_third;
+  for (std::uint32_t i = 0; i < 30; ++i) every_third.push_back({3 * i, 3 * i + 50});
+  EXPECT_TRUE(arranged(every_third).runs[0].is_gathered);
+  std::vector<Link> every_second;
+  for (std::uint32_t i = 0; i < 30; ++i) every_second.push_back({2 * i, 2 * i + 50});
+  EXPECT_FALSE(arranged(every_second).runs[0].is_gathered);
+}
+
+TEST(LinkOrder, HasEachLinkOnceAndIsKept) {
+  for (std::uint32_t seed = 0; seed < 300; ++seed) {
+    RandomRuns random(seed);
+    std::vector<Link> links = random.links(97);
+    const LinkOrder order = order_in_runs(links);
+
+    std::vector<std::uint32_t> sorted = order.links;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t l = 0; l < links.size(); ++l) ASSERT_EQ(sorted[l], l) << "seed " << seed;
+    ASSERT_EQ(sorted.size(), links.size()) << "seed " << seed;
+
+    std::vector<Link> in_order;
+    for (const std::uint32_t link : order.links) in_order.push_back(links[link]);
+    ASSERT_GE(order_in_runs(in_order).in_runs, order.in_runs) << "seed " << seed;
+    ASSERT_EQ(order_in_runs(in_order).links, sorted) << "not kept, seed " << seed;
+  }
+}
+
+TEST(LinkOrder, FindsTheRunsOfAShuffledNetWithLinksEitherWayRound) {
+  constexpr std::uint32_t kSide = 60;  // over several tiles
+  std::vector<Link> links;
+  for (std::uint32_t row = 0; row < kSide; ++row) {
+    for (const Link& link : chain(kSide * row, kSide - 1)) links.push_back(link);
+  }
+  for (const Link& link : chain(0, kSide * (kSide - 1), kSide)) links.push_back(link);
+  EXPECT_EQ(order_in_runs(links).in_runs, links.size());
+  std::mt19937 random(7);
+  std::shuffle(links.begin(), links.end(), random);
+  for (std::size_t l = 0; l < links.size(); l += 2) std::swap(links[l].mat_a, links[l].mat_b);
+
+  EXPECT_EQ(order_in_runs(links).in_runs, links.size());
+}
+
+TEST(LinkOrder, TakesASecondLinkBetweenTwoMatsInARunOfItsOwn) {
+  std::vector<Link> springs_and_dampers;
+  for (const Link& link : chain(0, 50))
+    springs_and_dampers.insert(springs_and_dampers.end(), 2, link);
+
+  const LinkOrder order = order_in_runs(springs_and_dampers);
+
+  EXPECT_EQ(order.in_runs, 100U);
+  for (std::uint32_t l = 0; l < 50; ++l) {
+    EXPECT_EQ(order.links[l], 2 * l);
+    EXPECT_EQ(order.links[50 + l], 2 * l + 1);
+  }
+}
+
+TEST(LinkOrder, StaysWhereNearlyAllLinksAreInRuns) {
+  std::vector<Link> links = chain(200, 70, 30);
+  links.push_back({3, 90});
+  for (const Link& link : chain(0, 70)) links.push_back(link);
+  const LinkOrder order = order_in_runs(links);
+  EXPECT_EQ(order.in_runs, 140U);
+  EXPECT_TRUE(std::is_sorted(order.links.begin(), order.links.end()));
+}
+
 TEST_P(LinkRuns, AddUpLikeAScalarLoopOverTheLinks) {
   int in_runs = 0;
   for (std::uint32_t seed = 0; seed < 240; ++seed) {
     RandomRuns random(seed);
     const NetworkDescription scene = random.network(1 + static_cast<int>(seed % 3));
     if (layout_of(scene).is_by_axis()) ++in_runs;
+    const NetworkDescription in_order = in_order_of_step(scene);
     World world = make_world(scene, GetParam());
     world.step();
 
@@ -108,7 +184,7 @@ TEST_P(LinkRuns, AddUpLikeAScalarLoopOverTheLinks) {
         position[i] = scene.mats[i].position + Vec3(1e-3 * (n % 40), 0, 0);
       }
       world.step();
-      const std::vector<Vec3> expected = scalar_forces(scene, position, delayed);
+      const std::vector<Vec3> expected = scalar_forces(in_order, position, delayed);
 
       for (std::uint32_t i = 0; i < scene.mats.size(); ++i) {
         ASSERT_EQ(world.link_force(i), expected[i]) << "seed " << seed << ", step " << n << ", MAT "

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim_node/engine/links/link_runs.h"
 #include "tests/engine/scenes.h"
 
 namespace cordis::test {
@@ -104,7 +105,17 @@ class RandomRuns {
   bool same_ = true;
 };
 
-/// The forces of linear links, one link after the other.
+/// The scene with its links in the order in which a step takes them.
+inline NetworkDescription in_order_of_step(NetworkDescription scene) {
+  if (!engine::layout_of(scene).is_by_axis()) return scene;
+  const std::vector<Link> links = scene.links;
+  scene.links.clear();
+  for (const std::uint32_t link : engine::order_in_runs(links).links)
+    scene.links.push_back(links[link]);
+  return scene;
+}
+
+/// The forces of linear links, one link after the other, in the order of the scene.
 inline std::vector<Vec3> scalar_forces(const NetworkDescription& scene,
                                        const std::vector<Vec3>& position,
                                        const std::vector<Vec3>& delayed) {
@@ -134,8 +145,9 @@ inline std::vector<Vec3> scalar_forces(const NetworkDescription& scene,
 }
 
 /// Adds a link with states between two more fixed points. The MATs are then stored by MAT, and all
-/// links are gathered.
+/// links are gathered, in the order in which a step of the scene takes them.
 inline NetworkDescription gathered(NetworkDescription scene) {
+  scene = in_order_of_step(std::move(scene));
   const auto first = static_cast<std::uint32_t>(scene.mats.size());
   scene.mats.push_back(fixed(Vec3::Zero()));
   scene.mats.push_back(fixed(Vec3(1, 0, 0)));

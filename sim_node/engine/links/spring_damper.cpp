@@ -20,17 +20,23 @@ std::size_t axes_of(Kind kind, const NetworkDescription& description) {
   return kind == Kind::kVectorSpring ? static_cast<std::size_t>(description.dimension) : 1;
 }
 
-/// Links by groups of the blocks, within one in link order.
+/// Links by groups of the blocks, within one in the order of order_in_runs().
 struct GroupedLinks {
   std::vector<Link> links;
   std::vector<std::size_t> first;  // of each group; and one more, which ends the last
 };
 
-GroupedLinks links_of(Kind kind, const NetworkDescription& description, const MatBlocks& blocks) {
+GroupedLinks links_of(Kind kind, const NetworkDescription& description, bool with_runs,
+                      const MatBlocks& blocks) {
   std::vector<Link> links;
-  for (const Link& link : description.links) {
-    if (!is_of(kind, description, link)) continue;
-    links.insert(links.end(), axes_of(kind, description), link);
+  const auto add = [&](const Link& link) {
+    if (is_of(kind, description, link)) links.insert(links.end(), axes_of(kind, description), link);
+  };
+  if (with_runs) {
+    for (const std::uint32_t link : order_in_runs(description.links).links)
+      add(ascending(description.links[link], description.dimension));
+  } else {
+    for (const Link& link : description.links) add(link);
   }
   std::vector<std::size_t> group;
   group.reserve(links.size());
@@ -52,9 +58,9 @@ SpringDamperArray::SpringDamperArray(const NetworkDescription& description, Kind
       is_1d_(description.dimension == 1 || kind == Kind::kVectorSpring),
       freezes_(description.freeze_tolerance > 0.0),
       active_(0, kLinkBatch) {
-  const GroupedLinks grouped = links_of(kind, description, blocks);
-  arrange(grouped.links, grouped.first, layout.is_by_axis() && kind == Kind::kAlong,
-          axes_of(kind, description), description.step);
+  const bool with_runs = layout.is_by_axis() && kind == Kind::kAlong;
+  const GroupedLinks grouped = links_of(kind, description, with_runs, blocks);
+  arrange(grouped.links, grouped.first, with_runs, axes_of(kind, description), description.step);
 }
 
 /// @param links  by groups  @param first  where the links of each group begin, and where the last end

@@ -456,9 +456,9 @@ AdvanceResult delay_masses(const MassColumns& masses, const double* velocity, do
 }
 
 /// Links of a run; the MATs are stored by axis. Of those that share a MAT the one before in link
-/// order adds its force first. Where a is below b, the forces on b of a batch precede those on a,
-/// and the other way round. In a chain, b = a + 1, each MAT is read and written once: the force of
-/// the link before comes from a register.
+/// order adds its force first: a is below b, so the forces on b of a batch precede those on a. In a
+/// chain, b = a + 1, each MAT is read and written once: the force of the link before comes from a
+/// register.
 template <class Lanes, int kAxes, Works kWorks, bool kViscous, bool kChained>
 struct RunLoop {
   using Row = typename Lanes::Row;
@@ -556,12 +556,9 @@ struct RunLoop {
       find_forces<kAllUsed>(l, part, used, force[part]);
       if constexpr (kChained) {
         add_chained(run.first_a + l + part * Lanes::kWidth, force[part]);
-      } else if (run.first_a < run.first_b) {
-        subtract(run.first_b + l + part * Lanes::kWidth, force[part]);
-        add(run.first_a + l + part * Lanes::kWidth, force[part]);
       } else {
-        add(run.first_a + l + part * Lanes::kWidth, force[part]);
         subtract(run.first_b + l + part * Lanes::kWidth, force[part]);
+        add(run.first_a + l + part * Lanes::kWidth, force[part]);
       }
     }
   }
