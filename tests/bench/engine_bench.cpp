@@ -1,5 +1,5 @@
 // tests/bench/engine_bench.cpp -- time of a step per link, mass update included: square grids of
-// spring-dampers with their links in order and shuffled, on each vector width; and one short
+// spring-dampers with their MATs in order and shuffled, on each vector width; and one short
 // string, where what a step costs at least shows; the integrators against each other; modes.
 //
 // usage: engine_bench --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
@@ -7,13 +7,13 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "sim_node/engine/world.h"
+#include "tests/bench/bench_scenes.h"
 
 namespace {
 
@@ -102,9 +102,8 @@ void step_of_a_grid_with_diagonals(benchmark::State& state) {
 BENCHMARK(step_of_a_grid_with_diagonals);
 
 void step_of_a_shuffled_grid(benchmark::State& state) {
-  NetworkDescription network = grid(3, true);
-  std::shuffle(network.links.begin(), network.links.end(), std::mt19937_64(1990));
-  step(state, network, cordis::engine::best_vector_width());
+  step(state, cordis::bench::with_shuffled_mats(grid(3, true)),
+       cordis::engine::best_vector_width());
 }
 BENCHMARK(step_of_a_shuffled_grid);
 
