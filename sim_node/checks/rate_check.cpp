@@ -14,7 +14,8 @@ std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Prob
   if (!scene.accuracy) return {};
   const scene::Accuracy& asked = *scene.accuracy;
   plan::RateSelection selection = plan::select_rate(
-      scene.network, {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s},
+      scene.network,
+      {asked.tolerance, asked.band_hz, asked.contact_energy, asked.over_s, scene::kHighestStepRate},
       scene.gesture_rate_hz,
       scene.integrator_is_open ? plan::integrators_for(scene.network)
                                : std::vector<std::string>{to_string(scene.network.integrator)},
@@ -25,14 +26,23 @@ std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Prob
     selection.uncertainty += ": " + uncertainty_text(scene, *selection.unstable);
   }
   if (!selection.uncertainty.empty()) problems.warning(place, selection.uncertainty);
-  if (scene.rate_is_open) {
+  const bool is_possible = selection.rate_hz <= scene::kHighestStepRate;
+  if (scene.rate_is_open && !is_possible) {
+    problems.error(asked.place,
+                   "no rate up to " + config::number_text(scene::kHighestStepRate) +
+                       " Hz keeps this: " + selection.because + " asks for " +
+                       config::number_text(selection.rate_hz) + " Hz",
+                   "ask for less, or write a rate_hz");
+  } else if (scene.rate_is_open) {
     scene::set_step(scene, selection.rate_hz, engine::integrator_named(selection.integrator));
   } else if (scene.step_rate_hz < selection.needed_hz) {
-    problems.warning(
-        asked.place,
-        "at " + config::number_text(scene.step_rate_hz) +
-            " Hz the scene does not keep this: " + selection.because + " asks for more",
-        "take a rate_hz of " + config::number_text(selection.rate_hz) + ", or leave rate_hz out");
+    problems.warning(asked.place,
+                     "at " + config::number_text(scene.step_rate_hz) +
+                         " Hz the scene does not keep this: " + selection.because +
+                         " asks for more",
+                     is_possible ? "take a rate_hz of " + config::number_text(selection.rate_hz) +
+                                       ", or leave rate_hz out"
+                                 : "no rate_hz may be so high: ask for less");
   }
   return selection;
 }

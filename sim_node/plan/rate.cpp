@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/table_pulse.h"
 
 namespace cordis::plan {
 namespace {
@@ -84,6 +85,7 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
     const double most = 4.0 * target.contact_energy / (1.0 + target.contact_energy);
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);
   }
+  if (const auto pulse = narrowest_pulse(per_gesture)) consider(pulse->width, RateReason::kPulse);
   const engine::IntegratorKind integrator = network.integrator;
   const auto consider_vibration = [&](const BandEdge& edge) {
     consider(largest_step(
@@ -126,6 +128,8 @@ const char* to_string(RateReason reason) noexcept {
       return "the decay at the end of the band";
     case RateReason::kCreep:
       return "the creep at the end of the band";
+    case RateReason::kPulse:
+      return "the shortest pulse of a table";
   }
   return "";
 }

@@ -13,6 +13,7 @@ struct AccuracyTarget {
   double band_hz = 100.0;       ///< highest frequency of vibrations that keep the tolerance
   double contact_energy = 0.1;  ///< largest part of its energy that a collision may gain or lose
   double over_s = 0.0;          ///< [s]
+  double highest_hz = 1e6;      ///< the highest rate that may be chosen
 };
 
 /// What made the rate as high as it is.
@@ -22,7 +23,8 @@ enum class RateReason : std::uint8_t {
   kContact,      ///< K' <= 4 e / (1 + e) for the stiffest liaison that comes and goes
   kPitch,        ///< at the end of the band
   kDecay,
-  kCreep  ///< the slower mode there, where viscosity lets nothing swing
+  kCreep,  ///< the slower mode there, where viscosity lets nothing swing
+  kPulse   ///< a step is no longer than the narrowest pulse of a table
 };
 
 struct FormulaRate {

@@ -47,7 +47,8 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   const FormulaRate floor = rate_by_formula(network, only_limits, gesture_rate_hz);
   const double lowest_hz = certain_rate(network, floor.rate_hz, gesture_rate_hz);
   const RateTrial trial =
-      find_rate(network, integrator, {target.tolerance, target.over_s, lowest_hz, gesture_rate_hz});
+      find_rate(network, integrator,
+                {target.tolerance, target.over_s, lowest_hz, gesture_rate_hz, target.highest_hz});
   if (trial.rate_hz == 0.0) {
     selection.uncertainty = "positions are not promised: " + trial.refusal;
     return selection;
@@ -97,9 +98,13 @@ RateSelection select_rate(const engine::NetworkDescription& network, const Accur
   };
   for (const std::string& integrator : integrators) {
     const RateSelection next = select_for(network, target, gesture_rate_hz, integrator, has_ports);
-    const bool keeps_more = best && next.uncertainty.empty() && !best->uncertainty.empty();
-    const bool keeps_less = best && !next.uncertainty.empty() && best->uncertainty.empty();
-    if (!best || keeps_more || (!keeps_less && cost(next) < cost(*best))) best = next;
+    const auto is_better = [&](const RateSelection& other) {
+      const bool is_possible = next.rate_hz <= target.highest_hz;
+      if (is_possible != (other.rate_hz <= target.highest_hz)) return is_possible;
+      if (next.uncertainty.empty() != other.uncertainty.empty()) return next.uncertainty.empty();
+      return cost(next) < cost(other);
+    };
+    if (!best || is_better(*best)) best = next;
   }
   return *best;
 }

@@ -32,7 +32,8 @@ double cost_of_a_step(engine::NetworkDescription network, const RateSelection& s
 /// a network that moves by itself is tried out (find_rate), within the limits of stability and of
 /// contacts. One whose ports are played is not: the gesture is unknown beforehand. No rate is tried at
 /// which its stability is not certain, if up to four times the rate of the limits there is a certain one.
-/// Where there is none the rate of the formulas stays.
+/// Where there is none the rate of the formulas stays. That may be above the highest rate of the target,
+/// where no integrator has a lower one.
 /// @param integrators  by name, at least one
 RateSelection select_rate(const engine::NetworkDescription& network, const AccuracyTarget& target,
                           double gesture_rate_hz, const std::vector<std::string>& integrators,

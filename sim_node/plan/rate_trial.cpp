@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <vector>
 
 #include "sim_node/plan/rate_selection.h"
@@ -14,10 +13,11 @@ namespace cordis::plan {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMaxWork = 1e8;  // links, contacts and MATs, each once a step
-constexpr int kMaxDoublings = 12;
-constexpr double kFalls = 0.9;    // from one rate to twice that, where errors fall at all
-constexpr double kMargin = 0.85;  // of the tolerance, where a rate is interpolated
+constexpr double kNoMotion = -1.0;   // an error where nothing moves
+constexpr double kMaxWork = 1.25e8;  // links, contacts and MATs, each once a step
+constexpr double kFalls = 0.9;       // from one rate to twice that, where errors fall at all
+constexpr double kLonger = 1.5;      // two runs keep together, where they are no chaos
+constexpr double kMargin = 0.85;     // of the tolerance, where a rate is interpolated
 
 /// What one step costs.
 double work_of_a_step(const engine::NetworkDescription& network, const std::string& integrator) {
@@ -35,81 +35,78 @@ double work_of_a_step(const engine::NetworkDescription& network, const std::stri
   return cost_of_a_step(integrator) * once;
 }
 
-/// Positions at the same moments for all rates; none where the run blew up.
-class SampledRuns {
+/// How two runs of one network differ.
+struct Difference {
+  double error = kInfinity;  ///< root of the mean square, over that of the motion; or kNoMotion
+  double together_s = 0.0;   ///< until they are first as far apart as the motion is large
+};
+
+/// Runs at one rate and at four times that, side by side. They are compared at every step of the
+/// slower one: moments apart from each other would miss what vibrates in time with them.
+class PairOfRuns {
  public:
-  SampledRuns(const engine::NetworkDescription& network, const std::string& integrator,
-              const RateTrialOptions& options)
-      : network_(network), integrator_(integrator) {
-    constexpr double kMaxSamples = 100.0;
-    const double periods = std::max(1.0, std::round(options.over_s * options.unit_hz));
-    const double stride = std::ceil(periods / kMaxSamples);
-    period_ = stride / options.unit_hz;
-    samples_ = static_cast<int>(std::ceil(periods / stride));
+  PairOfRuns(const engine::NetworkDescription& network, const std::string& integrator,
+             const RateTrialOptions& options)
+      : network_(network), integrator_(integrator), over_s_(options.over_s) {
     for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
       if (network.mats[i].kind == engine::MatKind::kMass) masses_.push_back(i);
     }
   }
 
-  bool can_afford(double rate) const {
-    if (runs_.contains(rate)) return true;
-    return spent_ + rate * period_ * samples_ * work_of_a_step(network_, integrator_) < kMaxWork;
-  }
+  bool can_afford(double rate) const { return spent_ + work_at(rate) < kMaxWork; }
 
-  /// Distance of the first from the second, over the amplitude of the second.
-  double difference(double rate, double finer) {
-    const std::vector<double>& first = samples_at(rate);
-    const std::vector<double>& second = samples_at(finer);
-    if (first.empty() || second.empty()) return kInfinity;
-    double square = 0.0;
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      square += (first[i] - second[i]) * (first[i] - second[i]);
+  Difference difference(double rate) {
+    spent_ += work_at(rate);
+    TrajectoryRun coarse(network_, integrator_, rate, nothing_);
+    TrajectoryRun fine(network_, integrator_, kFiner * rate, nothing_);
+    const auto steps = static_cast<std::uint64_t>(std::ceil(over_s_ * rate - 1e-6));
+    std::vector<engine::Vec3> sum(masses_.size(), engine::Vec3::Zero());
+    double motion = 0.0;
+    double apart = 0.0;
+    Difference found;
+    bool are_together = true;
+    for (std::uint64_t step = 1; step <= steps; ++step) {
+      bool is_finite = coarse.advance(1);
+      for (int part = 0; part < kFiner && is_finite; ++part) {
+        is_finite = fine.advance(1);
+        for (std::size_t i = 0; i < masses_.size(); ++i) {
+          const engine::Vec3 way =
+              fine.world().position(masses_[i]) - network_.mats[masses_[i]].position;
+          sum[i] += way;
+          motion += way.squaredNorm();
+        }
+      }
+      double apart_now = is_finite ? 0.0 : kInfinity;
+      for (std::size_t i = 0; i < masses_.size() && is_finite; ++i) {
+        const std::uint32_t mat = masses_[i];
+        apart_now += (coarse.world().position(mat) - fine.world().position(mat)).squaredNorm();
+      }
+      are_together = are_together && apart_now <= size_;
+      if (are_together) found.together_s = static_cast<double>(step) / rate;
+      if (!is_finite) return found;
+      apart += apart_now;
     }
-    return std::sqrt(square / square_about_mean(second));
+    const double fine_steps = kFiner * static_cast<double>(steps);
+    for (const engine::Vec3& way : sum) motion -= way.squaredNorm() / fine_steps;
+    if (!(motion > 0.0)) return {apart > 0.0 ? kInfinity : kNoMotion, 0.0};
+    size_ = motion / fine_steps;
+    found.error = std::sqrt(kFiner * apart / motion);
+    return found;
   }
 
  private:
-  double square_about_mean(const std::vector<double>& samples) const {
-    const std::size_t width = 3 * masses_.size();
-    double square = 0.0;
-    for (std::size_t i = 0; i < width; ++i) {
-      double mean = 0.0;
-      for (std::size_t sample = i; sample < samples.size(); sample += width)
-        mean += samples[sample] / samples_;
-      for (std::size_t sample = i; sample < samples.size(); sample += width) {
-        square += (samples[sample] - mean) * (samples[sample] - mean);
-      }
-    }
-    return square;
-  }
+  static constexpr int kFiner = 4;
 
-  const std::vector<double>& samples_at(double rate) {
-    const auto [place, is_new] = runs_.try_emplace(rate);
-    if (!is_new) return place->second;
-    std::vector<double>& samples = place->second;
-    TrajectoryRun run(network_, integrator_, rate, nothing_);
-    const auto steps = static_cast<std::uint64_t>(std::llround(period_ * rate));
-    spent_ += rate * period_ * samples_ * work_of_a_step(network_, integrator_);
-    for (int sample = 0; sample < samples_; ++sample) {
-      if (!run.advance(steps)) {
-        samples.clear();
-        break;
-      }
-      for (const std::uint32_t mat : masses_) {
-        const engine::Vec3 x = run.world().position(mat);
-        samples.insert(samples.end(), {x.x(), x.y(), x.z()});
-      }
-    }
-    return samples;
+  double work_at(double rate) const {
+    return (1.0 + kFiner) * rate * over_s_ * work_of_a_step(network_, integrator_);
   }
 
   const engine::NetworkDescription& network_;
   const std::string& integrator_;
   InputTrajectory nothing_;
-  double period_ = 0.0;
-  int samples_ = 0;
+  double over_s_;
   std::vector<std::uint32_t> masses_;
-  std::map<double, std::vector<double>> runs_;
+  double size_ = kInfinity;  ///< mean square of the motion, as the last pair had it [m^2]
   double spent_ = 0.0;
 };
 
@@ -119,41 +116,52 @@ RateTrial find_rate(const engine::NetworkDescription& network, const std::string
                     const RateTrialOptions& options) {
   constexpr double kFirstOrderFactor = 4.0 / 3.0;  // e(h) - e(h/4) is 3/4 of e(h), or more
   RateTrial trial;
-  SampledRuns runs(network, integrator, options);
+  PairOfRuns runs(network, integrator, options);
+  const double highest = std::floor(options.highest_hz / options.unit_hz) * options.unit_hz;
   double rate = options.lowest_hz;
-  double before = kInfinity;
-  for (int doubling = 0; doubling < kMaxDoublings; ++doubling, rate *= 2.0) {
-    if (!runs.can_afford(rate) || !runs.can_afford(4.0 * rate)) {
+  double rate_before = 0.0;
+  Difference before;
+  for (int doubling = 0; rate <= highest && rate > rate_before; ++doubling) {
+    if (!runs.can_afford(rate)) {
       trial.refusal = "it takes too long to try it out";
       return trial;
     }
-    const double error = kFirstOrderFactor * runs.difference(rate, 4.0 * rate);
-    if (std::isnan(error)) {
-      trial.refusal = "nothing moves by itself";
-      return trial;
+    Difference now = runs.difference(rate);
+    if (now.error == kNoMotion) {  // or it vibrates in time with the steps
+      if (doubling >= 3) {
+        trial.refusal = "nothing moves within that time";
+        return trial;
+      }
+      now.error = kInfinity;
     }
-    if (error <= options.tolerance) {
+    now.error *= kFirstOrderFactor;
+    if (now.error <= options.tolerance) {
       trial.rate_hz = rate;
-      trial.error = error;
-      if (std::isfinite(before)) {
-        const double order = std::clamp(std::log2(before / error), 0.3, 4.0);
-        const double share = std::pow(before / (kMargin * options.tolerance), 1.0 / order);
-        const double between =
-            std::ceil(0.5 * rate * share / options.unit_hz - 1e-9) * options.unit_hz;
-        const double there =
-            between < rate ? kFirstOrderFactor * runs.difference(between, 4.0 * rate) : kInfinity;
-        if (there <= options.tolerance) {
-          trial.rate_hz = between;
-          trial.error = there;
-        }
+      trial.error = now.error;
+      if (!std::isfinite(before.error)) return trial;
+      const double order =
+          std::clamp(std::log(before.error / now.error) / std::log(rate / rate_before), 0.3, 4.0);
+      const double share = std::pow(before.error / (kMargin * options.tolerance), 1.0 / order);
+      const double between =
+          std::ceil(rate_before * share / options.unit_hz - 1e-9) * options.unit_hz;
+      if (between >= rate || !runs.can_afford(between)) return trial;
+      const double there = kFirstOrderFactor * runs.difference(between).error;
+      if (there <= options.tolerance) {
+        trial.rate_hz = between;
+        trial.error = there;
       }
       return trial;
     }
-    if (doubling >= 3 && error > kFalls * before && std::isfinite(before)) {
-      trial.refusal = "its motion is chaotic: higher rates do not come nearer to each other";
+    const bool falls = now.error <= kFalls * before.error || !std::isfinite(before.error);
+    if (doubling >= 3 && !falls && now.together_s < kLonger * before.together_s) {
+      trial.refusal = now.together_s < options.over_s
+                          ? "its motion is chaotic: higher rates do not come nearer to each other"
+                          : "higher rates do not come nearer to each other";
       return trial;
     }
-    before = error;
+    before = now;
+    rate_before = rate;
+    rate = std::max(rate, std::min(2.0 * rate, highest));
   }
   trial.refusal = "no rate is high enough";
   return trial;

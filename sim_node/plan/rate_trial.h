@@ -12,6 +12,7 @@ struct RateTrialOptions {
   double over_s = 1.0;      ///< for so long from the start
   double lowest_hz = 0.0;   ///< not below; a multiple of the next
   double unit_hz = 1000.0;  ///< the rate is a multiple of it
+  double highest_hz = 1e6;  ///< not above
 };
 
 struct RateTrial {
@@ -21,9 +22,10 @@ struct RateTrial {
 };
 
 /// Plays the network by itself, its ports at rest, at rates that double. The error is the
-/// difference from the rate four times as high. Between two of them it goes by the order they show.
-/// Gives up where the errors do not fall (the motion is chaotic) and after a fixed amount of work:
-/// a second at most, on a machine as they are. The same choice on every machine.
+/// difference from the rate four times as high, over all steps. Between two rates it goes by the
+/// order they show. Gives up where the errors do not fall and two rates keep together no longer
+/// (the motion is chaotic), and after a fixed amount of work: a second at most, on a machine as
+/// they are. The same choice on every machine.
 RateTrial find_rate(const engine::NetworkDescription& network, const std::string& integrator,
                     const RateTrialOptions& options);
 

@@ -147,7 +147,7 @@ TEST(RateTrial, FindsTheRateByTrying) {
 TEST(RateTrial, SaysWhyItFindsNone) {
   const NetworkDescription still = oscillator(0.1, 1000.0, 0.0, 0.0, 0.0, 1e-3);
   EXPECT_EQ(plan::find_rate(still, "cordis", {0.01, 1.0, 100.0, 100.0}).refusal,
-            "nothing moves by itself");
+            "nothing moves within that time");
   const NetworkDescription long_run = oscillator(0.1, 1000.0, 0.0, 1.0, 0.0, 1e-3);
   EXPECT_EQ(plan::find_rate(long_run, "cordis", {1e-6, 1e5, 100.0, 100.0}).refusal,
             "it takes too long to try it out");

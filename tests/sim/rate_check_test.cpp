@@ -79,5 +79,56 @@ links:
   EXPECT_NE(selection->uncertainty.find(whole), std::string::npos) << "so the report has it";
 }
 
+/// A mass at 1 cm on a spring of 20 N/m, with an accuracy and more keys of the mass.
+scene::Scene asking(const std::string& accuracy, const std::string& step, const std::string& more,
+                    config::Problems& problems) {
+  scene::Scene scene =
+      scene::load_scene_text(test::filled(R"(cordis: 1
+space: 1
+accuracy: {<accuracy>}
+step: {<step>}
+liaisons: {k: {kind: spring, stiffness_n_per_m: 20, rest_m: 0}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  a: {kind: mass, mass_kg: 1, <more>}
+links: [{liaison: k, between: [g, a]}]
+)",
+                                          {{"accuracy", accuracy}, {"step", step}, {"more", more}}),
+                             "t", problems);
+  select_rate(scene, problems);
+  return scene;
+}
+
+TEST(SettledRate, IsNoneAboveTheHighestThatCanBeWritten) {
+  const std::string accuracy = "tolerance: 1e-9, band_hz: 1000";
+  config::Problems open;
+  asking(accuracy, "integrator: cordis", "at_m: 0.01", open);
+  EXPECT_TRUE(open.has_errors());
+  EXPECT_NE(open.text().find("t:3:"), std::string::npos) << open.text();
+  EXPECT_NE(
+      open.text().find("no rate up to 1000000 Hz keeps this: the pitch at the end of the band "
+                       "asks for "),
+      std::string::npos)
+      << open.text();
+
+  config::Problems written;
+  asking(accuracy, "integrator: cordis, rate_hz: 1000000", "at_m: 0.01", written);
+  EXPECT_FALSE(written.has_errors());
+  EXPECT_NE(written.text().find("no rate_hz may be so high: ask for less"), std::string::npos)
+      << written.text();
+}
+
+TEST(SettledRate, MeetsThePulsesOfTables) {
+  const std::string pulse =
+      "at_m: 0, driven: {force_n: {at_s: [0.1003, 0.10035, 0.1004], values: [[0], [100], [0]]}}";
+  for (const char* integrator : {"modal", "cordis"}) {
+    config::Problems problems;
+    const scene::Scene scene = asking("tolerance: 0.01, band_hz: 5, over_s: 0.3",
+                                      std::string("integrator: ") + integrator, pulse, problems);
+    EXPECT_EQ(problems.text(), "") << integrator;
+    EXPECT_GE(scene.step_rate_hz, 20000.0) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace cordis::sim
