@@ -10,6 +10,7 @@
 #include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/table_pulse.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
@@ -137,12 +138,30 @@ void check_gravity(const scene::Scene& scene, config::Problems& problems) {
   }
 }
 
+/// A table is taken at the steps alone: between two of them a pulse is lost.
+void check_pulses(const scene::Scene& scene, config::Problems& problems) {
+  const auto pulse = plan::narrowest_pulse(scene.network);
+  constexpr double kRounding = 1e-9;
+  if (!pulse || pulse->width * scene.step_rate_hz >= 1.0 - kRounding) return;
+  const scene::Called called = scene::call_mat(scene, scene.network.drives[pulse->drive].mat);
+  const double needed =
+      std::ceil((1.0 / pulse->width) / scene.gesture_rate_hz - kRounding) * scene.gesture_rate_hz;
+  problems.warning(called.place,
+                   "'driven' of " + called.name + " has a pulse of " + short_text(pulse->width) +
+                       " s at " + config::number_text(pulse->time) + " s, shorter than a step of " +
+                       short_text(scene.network.step) + " s: it may be lost, in whole or in part",
+                   needed <= scene::kHighestStepRate
+                       ? "a rate_hz of " + config::number_text(needed) + " meets it"
+                       : "make it longer and as much lower");
+}
+
 }  // namespace
 
 void check_start(const scene::Scene& scene, config::Problems& problems) {
   CORDIS_ASSERT(scene.network.step > 0.0);
   check_overlaps(scene, problems);
   check_gravity(scene, problems);
+  check_pulses(scene, problems);
 }
 
 }  // namespace cordis::sim

@@ -101,5 +101,33 @@ TEST(StartCheck, WarnsOfAPlaceWhoseRoundingSwallowsGravity) {
   EXPECT_EQ(warnings_of(falling("1e6", "rate_hz: 1000000, integrator: cordis")), "");
 }
 
+/// A mass of 1 kg on a spring that a table pushes with 100 N at most.
+std::string pushed(const std::string& times, const std::string& step) {
+  return R"(cordis: 1
+space: 1
+step: {)" +
+         step + R"(}
+liaisons: {k: {kind: spring, stiffness_n_per_m: 1000, rest_m: 0}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  a: {kind: mass, mass_kg: 1, at_m: 0, driven: {force_n: {at_s: [)" +
+         times + R"(], values: [[0], [100], [0]]}}}
+links: [{liaison: k, between: [g, a]}]
+)";
+}
+
+TEST(StartCheck, WarnsOfAPulseOfATableThatIsShorterThanAStep) {
+  const std::string text = warnings_of(pushed("0.1003, 0.10035, 0.1004", "rate_hz: 4000"));
+  EXPECT_NE(text.find("t:7:3: warning: 'driven' of a has a pulse of 5e-05 s at 0.10035 s, shorter "
+                      "than a step of 0.00025 s: it may be lost, in whole or in part"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("a rate_hz of 20000 meets it"), std::string::npos) << text;
+  EXPECT_EQ(warnings_of(pushed("0.1003, 0.10035, 0.1004", "rate_hz: 20000")), "");
+  EXPECT_EQ(warnings_of(pushed("0.1, 0.2, 0.3", "rate_hz: 4000")), "");
+  const std::string short_text = warnings_of(pushed("0.1, 0.1000001, 0.1000002", "rate_hz: 4000"));
+  EXPECT_NE(short_text.find("make it longer and as much lower"), std::string::npos) << short_text;
+}
+
 }  // namespace
 }  // namespace cordis::sim
