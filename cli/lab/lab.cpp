@@ -169,7 +169,8 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
   report.lab = load_lab_scene(options.file, options.duration_s);
   const engine::NetworkDescription& network = report.lab.scene.network;
   std::vector<std::string> integrators;
-  double limit = 0.0;  // the longest step that keeps all of them stable
+  double limit = 0.0;      // the longest step that keeps all of them stable
+  double resolving = 0.0;  // the highest rate below which one of them diverges
   for (const std::string& integrator : plan::integrator_names()) {
     const std::string refusal = plan::refusal_of(network, integrator);
     if (!refusal.empty()) {
@@ -184,11 +185,13 @@ LabReport run_lab(const LabOptions& options, const std::function<void(std::strin
     if (!stability.uncertainty)
       stability.certified.step = plan::certain_step_of(own, graph, stability);
     report.stability[integrator] = stability;
-    if (std::isfinite(stability.diverging_step)) limit = std::max(limit, stability.diverging_step);
+    if (!std::isfinite(stability.diverging_step)) continue;
+    limit = std::max(limit, stability.diverging_step);
+    resolving = std::max(resolving, 1.0 / stability.diverging_step);
   }
   plan::RateSweep sweep = plan::make_rate_sweep(
-      limit > 0.0 ? 1.0 / limit : 0.0,
-      {report.lab.duration_s, report.lab.scene.step_rate_hz, effort.highest_factor, effort.coarse});
+      limit > 0.0 ? 1.0 / limit : 0.0, {report.lab.duration_s, report.lab.scene.step_rate_hz,
+                                        effort.highest_factor, effort.coarse, resolving});
   const std::string left_out =
       shorten(sweep, plan::measure_steps(network).median_nsec,
               static_cast<double>(integrators.size()) / options.jobs, effort.all_runs_s);

@@ -21,7 +21,7 @@ std::string reference_text(const plan::Reference& reference) {
       "reference   {}: {} evaluations of all forces for {:.4g} s; amplitude {:.3g} m (rms)\n",
       reference.made_by, reference.evaluations, reference.sampling.duration(), reference.amplitude);
   text += fmt::format("            trusted to {:.1e} of the amplitude\n", reference.uncertainty);
-  if (reference.compared == reference.sampling.count) return text;
+  if (reference.compared == reference.sampling.count()) return text;
   const double until = reference.sampling.time(reference.compared - 1);
   const char* why = "the second one took too long: it ends";
   if (reference.diverged) why = "two references of different tolerance part";
@@ -51,7 +51,7 @@ std::string run_text(const LabReport& report, const LabRun& run) {
   const plan::TrialResult& result = run.result;
   const std::string instructions =
       result.instructions_per_s > 0.0 ? fmt::format("{:.3e}", result.instructions_per_s) : "-";
-  const bool late = report.reference.compared < report.reference.sampling.count;
+  const bool late = report.reference.compared < report.reference.sampling.count();
   std::string text =
       fmt::format("{:12}{:>9.7g}{:>14.7g}{:>12.4g}{:>14}", result.integrator, result.rate_hz,
                   result.evaluations_per_s, 1e-6 * result.nsec_per_s, instructions);

@@ -51,8 +51,9 @@ void take(std::ifstream& file, std::vector<Value>& values) {
 /// Writes or reads every field: `Step` is put or take.
 template <class File, class Of, class Step>
 void each_field(File& file, Of& reference, Step step) {
-  step(file, reference.sampling.period);
-  step(file, reference.sampling.count);
+  step(file, reference.sampling.moments);
+  step(file, reference.sampling.groups_hz);
+  step(file, reference.sampling.resolving_hz);
   step(file, reference.masses);
   step(file, reference.position);
   step(file, reference.kinetic);

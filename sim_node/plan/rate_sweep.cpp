@@ -32,6 +32,44 @@ bool is_multiple(double value, double base) {
   return times >= 0.5 && std::abs(times - std::round(times)) < kRounding * times;
 }
 
+struct Moment {
+  double time = 0.0;   // [s]
+  double group = 0.0;  // [Hz]
+};
+
+/// Steps of a rate up to the end, one in each of equal parts of the time, by the golden ratio.
+void add_uneven(double rate, double duration, int most, std::vector<Moment>& moments) {
+  constexpr double kGolden = 0.6180339887498949;
+  const double steps = std::max(1.0, std::ceil(duration * rate - 1e-9));
+  const double count = std::min(steps, static_cast<double>(most));
+  for (double part = 0.0; part < count - 1.0; part += 1.0) {
+    const double place = part + std::fmod(part * kGolden, 1.0);
+    moments.push_back({(1.0 + std::floor(place * steps / count)) / rate, rate});
+  }
+  moments.push_back({steps / rate, rate});
+}
+
+/// One group of moments for all rates that are multiples of one that resolves every vibration; one of
+/// its own for each other rate.
+Sampling uneven_sampling(const std::vector<double>& rates_hz, double resolving_hz,
+                         const RateSweepOptions& options) {
+  std::vector<Moment> moments;
+  for (const double rate : rates_hz) {
+    const bool is_served = std::ranges::any_of(rates_hz, [&](double lower) {
+      return lower >= resolving_hz && lower < rate && is_multiple(rate, lower);
+    });
+    if (!is_served) add_uneven(rate, options.duration, options.max_samples, moments);
+  }
+  std::ranges::stable_sort(moments, {}, &Moment::time);
+  Sampling sampling;
+  sampling.resolving_hz = resolving_hz;
+  for (const Moment& moment : moments) {
+    sampling.moments.push_back(moment.time);
+    sampling.groups_hz.push_back(moment.group);
+  }
+  return sampling;
+}
+
 }  // namespace
 
 RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options) {
@@ -63,8 +101,10 @@ RateSweep make_rate_sweep(double limit_hz, const RateSweepOptions& options) {
     std::sort(sweep.rates_hz.begin(), sweep.rates_hz.end());
   }
   const double periods = std::max(1.0, std::ceil(options.duration * base - 1e-9));
-  const double stride = std::ceil(periods / options.max_samples);
-  sweep.sampling = {stride / base, static_cast<int>(std::ceil(periods / stride))};
+  sweep.sampling =
+      periods < kFewestSamples
+          ? even_sampling(1.0 / base, static_cast<int>(periods))
+          : uneven_sampling(sweep.rates_hz, std::max(limit_hz, options.resolving_hz), options);
   return sweep;
 }
 

@@ -13,11 +13,12 @@ struct RateSweepOptions {
   double own_hz = 0.0;           ///< the rate of the scene itself
   double highest_factor = 64.0;  ///< the highest rate over the lowest stable one
   bool coarse = false;           ///< twice as much from rung to rung, instead of 1.33 or 1.5 times
-  int max_samples = 400;
+  double resolving_hz = 0.0;     ///< steps of this rate resolve every vibration; 0: of the limit
+  int max_samples = 200;         ///< samples of one rate
 };
 
-/// Rates from below the limit upwards, round numbers all, multiples of one rate, so that runs at
-/// all of them are sampled at the same moments.
+/// Rates from below the limit upwards, round numbers all, multiples of one rate. Each has samples at
+/// steps of its own, spread unevenly: what vibrates in time with them would seem to rest.
 struct RateSweep {
   std::vector<double> rates_hz;  ///< ascending
   Sampling sampling;

@@ -18,7 +18,7 @@ class Accuracy : public testing::TestWithParam<const char*> {
   void SetUp() override {
     ASSERT_TRUE(scene_.accuracy);
     ASSERT_TRUE(reference_.by_reference);
-    ASSERT_EQ(reference_.compared, reference_.sampling.count);
+    ASSERT_EQ(reference_.compared, reference_.sampling.count());
     ASSERT_LT(reference_.uncertainty, 0.02 * scene_.accuracy->tolerance);
   }
 
@@ -38,7 +38,11 @@ class Accuracy : public testing::TestWithParam<const char*> {
     const double period = 1.0 / scene_.gesture_rate_hz;
     return plan::make_reference(
         scene_.network, lab_.trajectory,
-        {{period, static_cast<int>(std::lround(lab_.duration_s / period))}, 1e-10, 60.0, 0.0, {}});
+        {plan::even_sampling(period, static_cast<int>(std::lround(lab_.duration_s / period))),
+         1e-10,
+         60.0,
+         0.0,
+         {}});
   }
 
   const plan::Reference reference_ = make_reference();

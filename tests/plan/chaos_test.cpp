@@ -12,7 +12,8 @@ namespace cordis::test {
 namespace {
 
 plan::Reference reference_of(const NetworkDescription& scene, double period, int count) {
-  return plan::make_reference(scene, {}, {{period, count}, 1e-10, 60.0, 1000.0, {}});
+  return plan::make_reference(scene, {},
+                              {plan::even_sampling(period, count), 1e-10, 60.0, 1000.0, {}});
 }
 
 /// Two masses in a row on springs of 0.3 m from a nail.

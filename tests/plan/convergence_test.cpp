@@ -49,8 +49,8 @@ TEST(Convergence, OfEveryMethodOnEveryProblem) {
     constexpr int kSamples = 25;
     constexpr double kFloor = 3e-10;  // below it the reference itself is uncertain
     const double steps = 4.0 * std::ceil(0.25 * problem.rate_hz * problem.duration / kSamples);
-    const plan::Sampling sampling{problem.duration / kSamples, kSamples};
-    const double rate = steps / sampling.period;
+    const plan::Sampling sampling = plan::even_sampling(problem.duration / kSamples, kSamples);
+    const double rate = steps * kSamples / problem.duration;
     const plan::InputTrajectory nothing;
     const plan::Reference reference =
         plan::make_reference(problem.network, nothing, {sampling, 1e-11, 60.0, 0.0, {}});

@@ -102,8 +102,7 @@ TEST(DrivenPlan, AddsTheForcesOfAllMasses) {
 
 TEST(DrivenPlan, IsComparedWithTheSchemeForWantOfAReferenceIntegrator) {
   plan::ReferenceOptions options;
-  options.sampling.period = 0.05;
-  options.sampling.count = 10;
+  options.sampling = plan::even_sampling(0.05, 10);
   options.finest_hz = 2000.0;
   const plan::Reference reference =
       plan::make_reference(row_between(true, engine::IntegratorKind::kCordis), {}, options);

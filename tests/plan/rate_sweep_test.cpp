@@ -10,7 +10,7 @@
 namespace cordis::plan {
 namespace {
 
-TEST(RateSweep, SamplesAtMomentsThatAllRatesHave) {
+TEST(RateSweep, SamplesEveryRateAtStepsOfItsOwn) {
   std::mt19937 random(20261124);
   std::uniform_real_distribution<double> decade(0.0, 5.0);
   for (int round = 0; round < 2000; ++round) {
@@ -21,10 +21,18 @@ TEST(RateSweep, SamplesAtMomentsThatAllRatesHave) {
     ASSERT_FALSE(sweep.rates_hz.empty()) << limit_hz << " Hz, " << options.duration << " s";
     EXPECT_TRUE(std::ranges::is_sorted(sweep.rates_hz));
     EXPECT_GE(sweep.sampling.duration(), options.duration * (1.0 - 1e-9));
+    EXPECT_TRUE(std::ranges::is_sorted(sweep.sampling.moments));
+    if (sweep.sampling.groups_hz.empty()) continue;  // too few
     for (const double rate : sweep.rates_hz) {
-      const double steps = rate * sweep.sampling.period;
-      EXPECT_NEAR(steps, std::round(steps), 1e-6 * steps) << rate << " Hz, " << options.duration;
-      EXPECT_GE(steps, 0.999) << rate << " Hz, " << options.duration;
+      const double group = sweep.sampling.group_of(rate);
+      EXPECT_GT(group, 0.0) << rate;
+      for (int sample = 0; sample < sweep.sampling.count(); ++sample) {
+        if (!sweep.sampling.is_for(sample, rate, group)) continue;
+        EXPECT_TRUE(is_step(sweep.sampling.time(sample), rate)) << rate << " Hz of " << group;
+      }
+      const auto samples = std::ranges::count_if(
+          sweep.sampling.moments, [rate](double moment) { return is_step(moment, rate); });
+      EXPECT_GE(samples, kFewestSamples) << rate << " Hz, " << options.duration;
     }
     if (limit_hz > 0.0) {
       EXPECT_LE(sweep.rates_hz.front(), 1.01 * limit_hz) << "begins above what diverges";
@@ -36,12 +44,12 @@ TEST(RateSweep, BeginsHigherWhereARunWouldHaveTooFewSamples) {
   // 0.25 s of a scene that diverges below 133 Hz: 20 Hz, a third of that, gives 5 samples.
   for (const double own_hz : {600.0, 1403.0}) {
     const RateSweep sweep = make_rate_sweep(133.0, {.duration = 0.25, .own_hz = own_hz});
-    EXPECT_GE(sweep.sampling.count, kFewestSamples) << own_hz;
+    EXPECT_GE(sweep.sampling.count(), kFewestSamples) << own_hz;
     EXPECT_LE(sweep.rates_hz.front(), 133.0) << own_hz;
   }
 
   // No rate below the limit gives enough of them in a hundredth of a second.
-  EXPECT_LT(make_rate_sweep(133.0, {.duration = 0.01, .own_hz = 600.0}).sampling.count,
+  EXPECT_LT(make_rate_sweep(133.0, {.duration = 0.01, .own_hz = 600.0}).sampling.count(),
             kFewestSamples);
 }
 

@@ -161,7 +161,7 @@ TEST(Reference, EndsWhereAChaoticMotionHasPartedAndThenKnowsTheEnergyAlone) {
   const NetworkDescription wild = free_cluster(12, 40, 0.0, 2);
   const plan::InputTrajectory nothing;
   const plan::Reference reference =
-      plan::make_reference(wild, nothing, {{0.01, 200}, 1e-9, 60.0, 0.0, {}});
+      plan::make_reference(wild, nothing, {plan::even_sampling(0.01, 200), 1e-9, 60.0, 0.0, {}});
   EXPECT_TRUE(reference.by_reference);
   EXPECT_TRUE(reference.diverged);
   EXPECT_GT(reference.compared, 10);

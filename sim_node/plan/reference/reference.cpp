@@ -58,7 +58,7 @@ class Sampler {
     }
     sampled.kinetic.push_back(kinetic);
     if (options_.progress) {
-      const double done = static_cast<double>(sampled.kinetic.size()) / options_.sampling.count;
+      const double done = static_cast<double>(sampled.kinetic.size()) / options_.sampling.count();
       options_.progress(share_before_ + done / 3.0);
     }
   }
@@ -98,7 +98,7 @@ SampledTrajectory sample_reference(const engine::NetworkDescription& network,
   };
   try {
     if (!trajectory.channels.empty()) begin_period();
-    for (int sample = 0; sample < options.sampling.count; ++sample) {
+    for (int sample = 0; sample < options.sampling.count(); ++sample) {
       const double until = options.sampling.time(sample);
       while (!trajectory.channels.empty() &&
              static_cast<double>(period + 1) * trajectory.period <= until * (1.0 + 1e-12)) {
@@ -119,36 +119,88 @@ SampledTrajectory sample_reference(const engine::NetworkDescription& network,
   return std::move(sampler.sampled);
 }
 
+/// The last step of a world, on a straight line.
+class BetweenSteps {
+ public:
+  explicit BetweenSteps(const engine::World& world) : world_(world) { keep(); }
+
+  /// The state that the line begins with.
+  void keep() {
+    const auto count = static_cast<std::uint32_t>(world_.network().mat_count());
+    position_.resize(count);
+    velocity_.resize(count);
+    for (std::uint32_t mat = 0; mat < count; ++mat) {
+      position_[mat] = world_.position(mat);
+      velocity_[mat] = world_.velocity(mat);
+    }
+  }
+  Vec3 position(std::uint32_t mat) const {
+    const Vec3 end = world_.position(mat);
+    return end + before_end * (position_[mat] - end);
+  }
+  Vec3 velocity(std::uint32_t mat) const {
+    const Vec3 end = world_.velocity(mat);
+    return end + before_end * (velocity_[mat] - end);
+  }
+
+  double before_end = 0.0;  // so much of the step
+
+ private:
+  const engine::World& world_;
+  std::vector<Vec3> position_;
+  std::vector<Vec3> velocity_;
+};
+
 SampledTrajectory sample_scheme(const engine::NetworkDescription& network,
                                 const InputTrajectory& trajectory, const ReferenceOptions& options,
                                 double rate_hz, double share_before) {
-  const auto steps =
-      static_cast<std::uint64_t>(std::max(1.0, std::round(rate_hz * options.sampling.period)));
-  TrajectoryRun run(network, "cordis", static_cast<double>(steps) / options.sampling.period,
-                    trajectory);
+  TrajectoryRun run(network, "cordis", rate_hz, trajectory);
+  BetweenSteps motion(run.world());
   Sampler sampler(network, options, share_before);
-  for (int sample = 0; sample < options.sampling.count && !sampler.is_late(); ++sample) {
-    if (!run.advance(steps)) break;
-    sampler.take(run.world());
+  for (int sample = 0; sample < options.sampling.count() && !sampler.is_late(); ++sample) {
+    constexpr double kRounding = 1e-6;  // of a step
+    const double steps = options.sampling.time(sample) * rate_hz;
+    const auto until = static_cast<std::uint64_t>(std::ceil(steps - kRounding));
+    const std::uint64_t done = run.world().step_count();
+    if (until > done) {
+      if (!run.advance(until - done - 1)) break;
+      motion.keep();
+      if (!run.advance(1)) break;
+    }
+    motion.before_end = static_cast<double>(run.world().step_count()) - steps;
+    sampler.take(motion);
   }
   sampler.sampled.evaluations = run.world().step_count();
   return std::move(sampler.sampled);
 }
 
+/// The samples for the amplitude: those of rates that resolve every vibration, where there are any.
+std::vector<std::size_t> resolving_rows(const Reference& reference) {
+  const Sampling& sampling = reference.sampling;
+  std::vector<std::size_t> all;
+  std::vector<std::size_t> resolving;
+  for (std::size_t r = 0; r < sampling.moments.size(); ++r) {
+    all.push_back(r);
+    if (!sampling.groups_hz.empty() && sampling.groups_hz[r] >= sampling.resolving_hz)
+      resolving.push_back(r);
+  }
+  return resolving.empty() ? all : resolving;
+}
+
 double amplitude_of(const Reference& reference) {
   const std::size_t width = 3 * reference.masses.size();
-  const std::size_t rows = reference.position.size() / width;
+  const std::vector<std::size_t> rows = resolving_rows(reference);
   double sum = 0.0;
   for (std::size_t i = 0; i < width; ++i) {
     double mean = 0.0;
-    for (std::size_t r = 0; r < rows; ++r) mean += reference.position[r * width + i];
-    mean /= static_cast<double>(rows);
-    for (std::size_t r = 0; r < rows; ++r) {
+    for (const std::size_t r : rows) mean += reference.position[r * width + i];
+    mean /= static_cast<double>(rows.size());
+    for (const std::size_t r : rows) {
       const double from_mean = reference.position[r * width + i] - mean;
       sum += from_mean * from_mean;
     }
   }
-  return std::sqrt(sum / static_cast<double>(rows * reference.masses.size()));
+  return std::sqrt(sum / static_cast<double>(rows.size() * reference.masses.size()));
 }
 
 /// Root of the mean square distance of the masses in a sample of two motions, over the amplitude.
@@ -185,7 +237,8 @@ int first_chaotic_sample(const Reference& reference, const SampledTrajectory& se
 void hold_against(const SampledTrajectory& second, const SampledTrajectory& third,
                   Reference& reference) {
   double sum = 0.0;
-  const auto samples = std::min(static_cast<int>(second.kinetic.size()), reference.sampling.count);
+  const auto samples =
+      std::min(static_cast<int>(second.kinetic.size()), reference.sampling.count());
   const int both = std::min(samples, static_cast<int>(third.kinetic.size()));
   const int chaotic = first_chaotic_sample(reference, second, third, both);
   for (int sample = 0; sample < samples; ++sample) {
@@ -225,6 +278,33 @@ void require_samples(int count, const std::string& what, const std::string& advi
 
 }  // namespace
 
+Sampling even_sampling(double period, int count) {
+  Sampling sampling;
+  for (int sample = 1; sample <= count; ++sample) sampling.moments.push_back(period * sample);
+  return sampling;
+}
+
+bool is_step(double moment, double rate_hz) noexcept {
+  constexpr double kRounding = 1e-6;
+  const double steps = moment * rate_hz;
+  return std::abs(steps - std::round(steps)) < kRounding;
+}
+
+double Sampling::group_of(double rate_hz) const noexcept {
+  double lowest = 0.0;
+  for (const double group : groups_hz) {
+    if (group == rate_hz) return group;
+    const bool serves = group >= resolving_hz && group < rate_hz && is_step(1.0 / group, rate_hz);
+    if (serves && (lowest == 0.0 || group < lowest)) lowest = group;
+  }
+  return lowest;
+}
+
+bool Sampling::is_for(int sample, double rate_hz, double group_hz) const noexcept {
+  if (groups_hz.empty()) return is_step(time(sample), rate_hz);
+  return groups_hz[static_cast<std::size_t>(sample)] == group_hz;
+}
+
 double Reference::distance(int sample, const double* positions) const noexcept {
   const double* own = row(sample);
   double sum = 0.0;
@@ -237,8 +317,10 @@ double Reference::distance(int sample, const double* positions) const noexcept {
 Reference make_reference(const engine::NetworkDescription& network,
                          const InputTrajectory& trajectory, const ReferenceOptions& options) {
   std::ostringstream enough;
-  enough << ": ask for " << options.sampling.period * kFewestSamples << " s";
-  require_samples(options.sampling.count, "the duration has", enough.str());
+  const int asked = options.sampling.count();
+  enough << ": ask for " << options.sampling.duration() / std::max(1, asked) * kFewestSamples
+         << " s";
+  require_samples(asked, "the duration has", enough.str());
   Reference reference;
   reference.masses = masses_of(network);
   SampledTrajectory first;
@@ -258,11 +340,13 @@ Reference make_reference(const engine::NetworkDescription& network,
                         " Hz, because " + refusal.what();
   }
   reference.sampling = options.sampling;
-  reference.sampling.count = static_cast<int>(first.kinetic.size());
+  reference.sampling.moments.resize(first.kinetic.size());
+  if (!reference.sampling.groups_hz.empty())
+    reference.sampling.groups_hz.resize(first.kinetic.size());
   reference.position = std::move(first.position);
   reference.kinetic = std::move(first.kinetic);
   reference.evaluations = first.evaluations;
-  require_samples(reference.sampling.count,
+  require_samples(reference.sampling.count(),
                   "the motion is so rough that within its time the reference has only");
   reference.amplitude = amplitude_of(reference);
   if (!(reference.amplitude > 0.0)) throw NothingMoves();
@@ -280,12 +364,13 @@ Reference make_reference(const engine::NetworkDescription& network,
 
 std::uint64_t key_of(const engine::NetworkDescription& network, const InputTrajectory& trajectory,
                      const Sampling& sampling, double tolerance) {
-  constexpr std::uint64_t kOfThreeRuns = 3;
+  constexpr std::uint64_t kOfSingleMoments = 4;
   engine::StateHash hash;
-  hash.add(kOfThreeRuns);
+  hash.add(kOfSingleMoments);
   hash.add(engine::Network(network).fingerprint());
-  for (const double value : {trajectory.period, sampling.period, tolerance}) hash.add(value);
-  hash.add(static_cast<std::uint64_t>(sampling.count));
+  for (const double value : {trajectory.period, tolerance}) hash.add(value);
+  for (const double moment : sampling.moments) hash.add(moment);
+  for (const double group : sampling.groups_hz) hash.add(group);
   for (const Channel& channel : trajectory.channels) {
     hash.add(static_cast<std::uint64_t>(channel.mat));
     for (const Vec3& value : channel.value) {

@@ -1,6 +1,7 @@
 // sim_node/plan/reference/reference.h -- the motion that trials of a network are compared with.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
@@ -11,14 +12,27 @@
 
 namespace cordis::plan {
 
-/// When motions are compared: at `period`, 2 `period`, ..., `count` times.
+/// When motions are compared.
 struct Sampling {
-  double period = 0.0;  ///< [s]
-  int count = 0;
+  std::vector<double> moments;  ///< ascending [s]
+  /// Per moment the rate that has a step there. A run is compared at the moments of its group. Empty: at
+  /// each moment at which it has a step.
+  std::vector<double> groups_hz;
+  double resolving_hz = 0.0;  ///< from here on the steps of a rate resolve every vibration
 
-  double time(int sample) const noexcept { return period * (sample + 1); }
-  double duration() const noexcept { return period * count; }
+  int count() const noexcept { return static_cast<int>(moments.size()); }
+  double time(int sample) const noexcept { return moments[static_cast<std::size_t>(sample)]; }
+  /// The rate whose moments serve a run at this one: itself, or the lowest that resolves and divides it.
+  double group_of(double rate_hz) const noexcept;
+  bool is_for(int sample, double rate_hz, double group_hz) const noexcept;
+  double duration() const noexcept { return moments.empty() ? 0.0 : moments.back(); }
 };
+
+/// At `period`, 2 `period`, ..., `count` times.
+Sampling even_sampling(double period, int count);
+
+/// True if a run at this rate has a step at a moment.
+bool is_step(double moment, double rate_hz) noexcept;
 
 /// The motion of the masses of a network, and how far it can be trusted.
 ///

@@ -50,9 +50,11 @@ class Comparison {
     }
     const double apart = reference_.distance(sample, positions_.data());
     square_ += apart * apart;
+    ++compared_;
     return apart < kBlownUp;
   }
-  double error() const { return std::sqrt(square_ / reference_.compared); }
+  /// As large as the motion where nothing could be compared.
+  double error() const { return compared_ > 0 ? std::sqrt(square_ / compared_) : 1.0; }
   double energy_error() const { return expected_ > 0.0 ? kinetic_ / expected_ - 1.0 : 0.0; }
 
  private:
@@ -61,6 +63,7 @@ class Comparison {
   double highest_energy_;
   std::vector<double> positions_;
   double square_ = 0.0;
+  int compared_ = 0;
   double kinetic_ = 0.0;
   double expected_ = 0.0;
 };
@@ -129,8 +132,10 @@ TrialResult try_out(const engine::NetworkDescription& network, const std::string
   InstructionCounter instructions;
   double nsec = 0.0;
   std::uint64_t done = 0;
-  for (int sample = 0; sample < reference.sampling.count && !result.blown_up; ++sample) {
+  const double group = reference.sampling.group_of(rate_hz);
+  for (int sample = 0; sample < reference.sampling.count() && !result.blown_up; ++sample) {
     const double time = reference.sampling.time(sample);
+    if (!reference.sampling.is_for(sample, rate_hz, group)) continue;
     const auto due = static_cast<std::uint64_t>(std::llround(time * rate_hz));
     const double from = thread_nsec();
     instructions.resume();

@@ -53,7 +53,7 @@ struct TrialResult {
   double blown_up_at = 0.0;  ///< [s]
 };
 
-/// Runs it to the end of the reference.
+/// Runs it to the end of the reference. It is compared at the moments that are for its rate.
 /// @throws as TrajectoryRun
 TrialResult try_out(const engine::NetworkDescription& network, const std::string& integrator,
                     double rate_hz, const InputTrajectory& trajectory, const Reference& reference);
