@@ -42,6 +42,13 @@ SceneLoop::SceneLoop(const node::NodeStart& start, std::unique_ptr<LoadedScene> 
   status_.change_shadow(loaded.shadow, loaded.watches_energy());
 }
 
+void SceneLoop::begin_paused() {
+  Request request;
+  request.source = std::make_shared<const RequestSource>();
+  runner_.execute(request);
+  inputs_.command(request);
+}
+
 void SceneLoop::wait_for_signal_reader(const std::string& node) {
   const bool is_paced = clock_ != config::Clock::kRealtime;
   if (frames_.wait_for_signal_reader(node, is_paced, kLongestReaderWait) || node::stop_requested())

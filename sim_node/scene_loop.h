@@ -31,6 +31,8 @@ class SceneLoop {
             double duration_s, bool is_forced, dds::Participant& participant, DeviceLink& devices,
             StatusSnapshot& status);
 
+  /// Before the first turn: the scene is paused at its start, as by a command.
+  void begin_paused();
   /// Before the first turn: whom a pause is reported to at once.
   void report_pauses_to(node::StatusPublisher& publisher) noexcept { publisher_ = &publisher; }
   /// Before the first turn: FramePublisher::wait_for_signal_reader(), at most 5 s.

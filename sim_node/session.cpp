@@ -49,7 +49,9 @@ Session::Session(const node::NodeStart& start, SimConfig config)
             status.lost_events(loop_.lost_events());
           },
           [this] { snapshot_.watch(); }),
-      control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {}
+      control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {
+  if (config.paused) loop_.begin_paused();
+}
 
 /// Before anything else needs the cores.
 void Session::share_steps() {

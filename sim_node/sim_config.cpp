@@ -37,6 +37,7 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
   section.scene_file = reader.required_text("scene");
   section.duration_s = reader.optional_number("duration_s", 0.0, config::Range::not_negative());
   section.force = reader.optional_truth("force", false);
+  section.paused = reader.optional_truth("paused", false);
   section.delay_quantile =
       reader.optional_number("delay_quantile", 0.95, config::Range::between(0.5, 1.0));
   section.signals_for = reader.optional_text("signals_for", "");
@@ -58,6 +59,7 @@ SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode
   const SimSection section = read_sim_section(node, problems);
   SimConfig sim{section.duration_s,
                 section.force,
+                section.paused,
                 section.delay_quantile,
                 section.signals_for,
                 section.recorded_by,

@@ -18,7 +18,8 @@ struct SimSection {
   config::Place scene_place;  ///< where that path stands
   /// `duration_s`: simulated time after which the node ends by itself [s]; 0 = never
   double duration_s = 0.0;
-  bool force = false;  ///< `force`: a scene that is surely unstable runs all the same
+  bool force = false;   ///< `force`: a scene that is surely unstable runs all the same
+  bool paused = false;  ///< `paused`: the scene is paused at its start
   /// `delay_quantile`: the share of the answers to a device that come within the delay for which
   /// its limits are computed
   double delay_quantile = 0.95;
@@ -36,6 +37,7 @@ SimSection read_sim_section(const config::LaunchNode& node, config::Problems& pr
 struct SimConfig {
   double duration_s = 0.0;               ///< duration from the section
   bool force = false;                    ///< `force` of the section
+  bool paused = false;                   ///< `paused` of the section
   double delay_quantile = 0.95;          ///< quantile from the section
   std::string signals_for;               ///< `signals_for` of the section
   std::vector<std::string> recorded_by;  ///< `recorded_by` of the section

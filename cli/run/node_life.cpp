@@ -70,10 +70,12 @@ bool NodeLife::take_end(Time now, bool stopping) {
   return true;
 }
 
-bool NodeLife::restart(Time now) {
+bool NodeLife::restart(Time now, const std::vector<std::string>& more_words) {
   restart_at_.reset();
+  std::vector<std::string> words = words_;
+  words.insert(words.end(), more_words.begin(), more_words.end());
   try {
-    child_ = std::make_unique<Child>(words_, orphan_signal_);
+    child_ = std::make_unique<Child>(words, orphan_signal_);
   } catch (const std::exception& error) {
     end_with({.code = kFailure, .reason = error.what()}, now, /*stopping=*/false);
   }

@@ -50,9 +50,10 @@ class NodeLife {
   /// start again
   /// @return true once per end; restart_at() reports whether it starts again.
   bool take_end(Time now, bool stopping);
-  /// Starts the process again. @return true when it runs; else take_end()'s rules hold for the
+  /// Starts the process again. @param more_words  stand behind the arguments, this time alone
+  /// @return true when it runs; else take_end()'s rules hold for the
   /// failed start, and restart_at() and ending() report what follows.
-  bool restart(Time now);
+  bool restart(Time now, const std::vector<std::string>& more_words);
   /// A process that waits to be started again is over.
   void cancel_restart() noexcept { restart_at_.reset(); }
 

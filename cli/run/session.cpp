@@ -88,10 +88,18 @@ class Session : public Watcher {
 
   void restarts(std::size_t process, const Ending& ending,
                 std::chrono::milliseconds delay) override {
+    take_statuses();
     const PlannedNode& node = plan_.nodes[process];
     board_.begin_life(node.name, static_cast<std::uint64_t>(node::monotonic_nsec()));
     output_.say(node.name + ": " + ending.text() + "; it starts again in " + in_seconds(delay) +
-                " s" + (node.program == "sim_node" ? " and begins at the start of the scene" : ""));
+                " s" + loss_of(node));
+  }
+
+  std::vector<std::string> words_of_next_life(std::size_t process) override {
+    const PlannedNode& node = plan_.nodes[process];
+    const std::optional<bool> paused = board_.was_paused(node.name);
+    if (node.program != "sim_node" || !paused) return {};
+    return {node.name + (*paused ? ".paused=true" : ".paused=false")};
   }
 
   void restarted(std::size_t process) override { ++restarts_[process]; }
@@ -185,6 +193,15 @@ class Session : public Watcher {
         end.reason = status->text();
     }
     return ends;
+  }
+
+  /// What a node that starts again has lost, and what it keeps.
+  std::string loss_of(const PlannedNode& node) const {
+    if (node.program != "sim_node") return "";
+    const bool was_paused = board_.was_paused(node.name).value_or(false);
+    return std::string(
+               " and begins at the start of the scene; what `load` and `set` changed is lost") +
+           (was_paused ? "; it was paused, and stays so until `resume`" : "");
   }
 
   void stop() {

@@ -8,6 +8,7 @@
 
 #include "idl/scene.h"
 #include "node/config/count_text.h"
+#include "node/status_words.h"
 #include "node/step_troubles.h"
 
 namespace cordis::cli {
@@ -144,7 +145,17 @@ bool StatusBoard::put(const msg::NodeStatus& status) {
   const std::uint64_t silent_ticks = newest.silent_ticks();
   newest = status;
   if (stopping_) newest.silent_ticks(silent_ticks);
+  const msg::NodePhase phase = status.phase();
+  if (status.kind() == msg::KIND_SIM_NODE && phase != msg::PHASE_STARTING &&
+      !node::has_ended(phase))
+    was_paused_[status.node()] = phase == msg::PHASE_PAUSED;
   return true;
+}
+
+std::optional<bool> StatusBoard::was_paused(const std::string& node) const {
+  const auto known = was_paused_.find(node);
+  if (known == was_paused_.end()) return std::nullopt;
+  return known->second;
 }
 
 void StatusBoard::begin_life(const std::string& node, std::uint64_t first_epoch) {

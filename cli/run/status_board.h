@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,13 @@ class StatusBoard {
   /// @return whether it was taken.
   bool put(const msg::NodeStatus& status);
 
-  /// A node has been started again: what an older life of it said no longer counts.
-  /// @param first_epoch  as above
+  /// A node has been started again: what an older life of it said no longer counts, but for
+  /// was_paused(). @param first_epoch  as above
   void begin_life(const std::string& node, std::uint64_t first_epoch);
+
+  /// Whether a sim_node was paused when it last said how it stands, in whatever life of it; nothing
+  /// before it has.
+  std::optional<bool> was_paused(const std::string& node) const;
 
   /// The session is being stopped: from now on no node answers for the silence of another, which
   /// is stopped before it.
@@ -45,6 +50,7 @@ class StatusBoard {
   bool stopping_ = false;
   std::map<std::string, std::uint64_t> first_epoch_of_;  // of those that were started again
   std::map<std::string, msg::NodeStatus> newest_;
+  std::map<std::string, bool> was_paused_;
 };
 
 /// A line per node in the order of `nodes`. It has the rate reached, overruns, latency, energy

@@ -109,7 +109,7 @@ class Supervision {
       NodeLife& life = *lives_[i];
       if (plan_.begun()) life.cancel_restart();
       if (!life.restart_at() || now < *life.restart_at()) continue;
-      if (life.restart(now)) {
+      if (life.restart(now, watcher_.words_of_next_life(i))) {
         watcher_.restarted(i);
       } else {
         report_end_of(i, now);

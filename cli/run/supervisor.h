@@ -32,6 +32,8 @@ class Watcher {
   /// A process died, and starts again after `delay`.
   virtual void restarts(std::size_t /*process*/, const Ending& /*ending*/,
                         std::chrono::milliseconds /*delay*/) {}
+  /// It starts again now. @return words that follow those of its command, for this life alone
+  virtual std::vector<std::string> words_of_next_life(std::size_t /*process*/) { return {}; }
   /// It has been started again.
   virtual void restarted(std::size_t /*process*/) {}
   /// A process ended for good; `stopping` when all were to end anyway. @return whether the others

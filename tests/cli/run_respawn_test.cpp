@@ -46,7 +46,7 @@ TEST_F(RunRespawn, SaysThatASceneBeginsAtItsStart) {
   ASSERT_TRUE(run->wait_for_output("sim    | back\n", kPatience)) << run->output();
   EXPECT_EQ(count_of(run->output(),
                      "cordis | sim: killed by signal 9 (Killed); it starts again in 0.2 s and "
-                     "begins at the start of the scene\n"),
+                     "begins at the start of the scene; what `load` and `set` changed is lost\n"),
             1u)
       << run->output();
   run->signal(SIGTERM);

@@ -49,6 +49,28 @@ TEST(StatusBoard, ForgetsTheLifeBeforeTheRestartOfANode) {
   EXPECT_NE(board.find("key"), nullptr) << "the others stay";
 }
 
+TEST(StatusBoard, KnowsWhetherASimWasPausedBeforeItDied) {
+  StatusBoard board(/*first_epoch=*/100);
+  const auto put = [&board](msg::NodePhase phase, std::uint64_t epoch) {
+    msg::NodeStatus status = status_of("sim", msg::KIND_SIM_NODE, epoch);
+    status.phase(phase);
+    board.put(status);
+  };
+  EXPECT_EQ(board.was_paused("sim"), std::nullopt);
+  put(msg::PHASE_RUNNING, 101);
+  EXPECT_EQ(board.was_paused("sim"), false);
+  put(msg::PHASE_PAUSED, 101);
+
+  board.begin_life("sim", 200);
+  EXPECT_EQ(board.was_paused("sim"), true);
+  put(msg::PHASE_STARTING, 201);
+  EXPECT_EQ(board.was_paused("sim"), true) << "a life that has not begun to play";
+  put(msg::PHASE_FAILED, 201);
+  EXPECT_EQ(board.was_paused("sim"), true);
+  put(msg::PHASE_WAITING, 201);
+  EXPECT_EQ(board.was_paused("sim"), false);
+}
+
 TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   StatusBoard board(/*first_epoch=*/100);
   EXPECT_FALSE(board.put(status_of("sim", msg::KIND_SIM_NODE, 99)));

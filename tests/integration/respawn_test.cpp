@@ -139,6 +139,42 @@ TEST_F(Respawn, OfEachNodeInTurnLeavesTheSessionWhole) {
   }
 }
 
+TEST_F(Respawn, OfAPausedSimGivesNoForceBeforeResume) {
+  const auto ctl = [](const std::string& verb) {
+    ChildProcess process({program_path("cordis"), "ctl", "plucked_string", "--domain",
+                          std::to_string(own_domain()), verb});
+    return process.wait(kPatience);
+  };
+  ASSERT_TRUE(all_run());
+  ASSERT_TRUE(is_felt());
+  ASSERT_EQ(ctl("pause"), 0);
+  ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
+  const std::uint64_t told = status_.of("sim").sequence_number();
+  ASSERT_TRUE(status_.wait_for("sim", [&](const msg::NodeStatus& status) {
+    return status.sequence_number() > told + 1;  // the launcher has heard of it, too
+  }));
+  const std::uint64_t old_epoch = status_.of("sim").epoch();
+  ASSERT_EQ(kill(process_of(launcher_, "sim"), SIGKILL), 0);
+
+  ASSERT_TRUE(status_.wait_for("sim", [&](const msg::NodeStatus& status) {
+    return status.epoch() != old_epoch && status.phase() != msg::PHASE_STARTING;
+  }));
+
+  EXPECT_EQ(status_.of("sim").phase(), msg::PHASE_PAUSED);
+  const std::uint64_t epoch = status_.of("sim").epoch();
+  msg::GestureForces force;
+  for (int answers = 0; answers < 100;) {
+    if (!eventually([&] { return forces_.take(force); })) FAIL() << "no answers";
+    if (force.epoch() != epoch) continue;
+    ++answers;
+    ASSERT_EQ(force.force_n()[0], 0.0) << "answer " << answers;
+  }
+  EXPECT_NE(launcher_.output().find("it was paused, and stays so until `resume`"),
+            std::string::npos);
+  ASSERT_EQ(ctl("resume"), 0);
+  EXPECT_TRUE(is_felt());
+}
+
 config::Launch load(const std::string& path) {
   config::Problems problems;
   config::Launch launch = config::load_launch(path, {}, problems);

@@ -206,7 +206,7 @@ clock: realtime
 network: {interface: eth0, peers: [192.168.5.2], multicast: true}
 security: keys
 nodes:
-  sim: {node: sim_node, scene: none.yaml, duration_s: 1, force: true, delay_quantile: 0.9, signals_for: cordis, recorded_by: [tape], threads: 2}
+  sim: {node: sim_node, scene: none.yaml, duration_s: 1, force: true, paused: true, delay_quantile: 0.9, signals_for: cordis, recorded_by: [tape], threads: 2}
   key: {node: device_node, device: devices/keyboard.yaml}
   view: {node: viz_node, address: 127.0.0.1, port: 8080, rate_hz: 25, scenes: [none.yaml], parameters: true, foxglove: true}
   tape: {node: record_node, out: none.mcap, topics: [scene/*], exclude: none, idl: none.idl, compression: lz4}

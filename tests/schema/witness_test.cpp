@@ -36,6 +36,7 @@ constexpr std::array kExceptions{
     Exception{"launch nodes.NAME.signals_for", "set by cordis run --signals"},
     Exception{"launch nodes.NAME.recorded_by", "set by cordis run"},
     Exception{"launch nodes.NAME.force", "lets a scene run that surely diverges: none ships"},
+    Exception{"launch nodes.NAME.paused", "set by cordis run for a paused scene that starts again"},
     Exception{"launch nodes.NAME.delay_quantile", "of a host that is late more often"},
     Exception{"launch nodes.NAME.threads", "of scenes larger than any that ships"},
     Exception{"launch nodes.NAME.address", "opens a page to the network: nothing that ships does"},
