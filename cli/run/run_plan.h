@@ -15,6 +15,9 @@ namespace cordis::cli {
 /// The name under which `cordis run` takes part in its session.
 inline constexpr const char* kLauncherNode = "cordis";
 
+/// Name of the node that --record makes.
+inline constexpr const char* kRecorder = "record";
+
 /// What a person asked for.
 struct RunOptions {
   std::string launch_file;
@@ -24,6 +27,7 @@ struct RunOptions {
   std::string log_directory;                         ///< empty = no files
   std::string signals_file;                          ///< empty = none
   std::string summary_file;                          ///< empty = none
+  bool records = false;                              ///< --record: the take is wanted
   bool dry_run = false;
   bool no_color = false;
 };

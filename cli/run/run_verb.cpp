@@ -11,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/programs.h"
 #include "cli/run/node_check.h"
+#include "cli/run/running_nodes.h"
 #include "cli/run/session.h"
 #include "cli/table/table_options.h"
 #include "node/random_token.h"
@@ -92,6 +93,7 @@ int run(const RunOptions& options) {
          /*replace=*/1);
   if (!launch.domain) name_domain(plan, registration.domain());
   if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
+  refuse_running_nodes(plan, launch.session, registration.domain());
   return run_session(launch, plan, options, registration, network, security, signals);
 }
 
@@ -100,8 +102,6 @@ struct RunWords {
   std::string duration;
   std::string record;
 };
-
-constexpr const char* kRecorder = "record";  // name of the node that --record makes
 
 /// Words that make a record_node write this file, whatever the launch file says of one. It is started
 /// too where only some nodes are.
@@ -151,6 +151,7 @@ void add_run_verb(CommandLine& line) {
       "viz_node and a record_node, unless the file says otherwise.\n"
       "Exit code: 0 all well, else that of the first required node that was given up:\n"
       "1 failed at run time, 2 bad file or command line, 128 + signal when it was killed.\n"
+      "1 too where a required node was down at the end, and where the take of --record failed.\n"
       "1 too where the board of a required device was never connected, and no hot standby\n"
       "played the device. The end says so; 'complete' of the summary is false then, and its\n"
       "'nodes' has the phase of each node, with the reason.\n\n"
@@ -161,6 +162,7 @@ void add_run_verb(CommandLine& line) {
       "sim,keyboard\n");
   verb.action([words] {
     if (!words->record.empty()) record_into(words->record, words->options);
+    words->options.records = !words->record.empty();
     if (!words->duration.empty()) words->options.duration = parse_duration(words->duration);
     const NamedFile signals{"--signals", words->options.signals_file};
     const NamedFile summary{"--summary", words->options.summary_file};

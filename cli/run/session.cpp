@@ -41,6 +41,11 @@ std::vector<OtherNode> others_of(const config::Launch& launch, const RunPlan& pl
   return others;
 }
 
+bool simulates(const RunPlan& plan) {
+  return std::ranges::any_of(plan.nodes,
+                             [](const PlannedNode& node) { return node.program == "sim_node"; });
+}
+
 /// The launch file and the words that change it: another launcher needs the same.
 std::string launch_words(const config::Launch& launch, const RunOptions& options) {
   std::vector<std::string> words{launch.file};
@@ -57,7 +62,8 @@ class Session : public Watcher {
         registration_(registration),
         output_(names_of(plan), options.log_directory, options.no_color),
         others_(others_of(launch, plan), launch_words(launch, options), Clock::now()),
-        board_(static_cast<std::uint64_t>(node::monotonic_nsec())),
+        first_epoch_(static_cast<std::uint64_t>(node::monotonic_nsec())),
+        board_(first_epoch_),
         participant_({.domain = registration.domain(),
                       .session = launch.session,
                       .node = kLauncherNode,
@@ -68,10 +74,14 @@ class Session : public Watcher {
         present_(plan.nodes.size(), true),
         killed_(plan.nodes.size(), false),
         restarts_(plan.nodes.size(), 0),
+        is_down_(plan.nodes.size(), false),
         started_(Clock::now()) {
+    for (const PlannedNode& node : plan.nodes)
+      is_needed_.push_back(node.required || (options.records && node.name == kRecorder));
     if (launch.clock == config::Clock::kRealtime) timers_.emplace();
     if (!options.signals_file.empty() || !options.summary_file.empty())
-      signals_.emplace(participant_, options.signals_file, options.summary_file);
+      signals_.emplace(participant_, options.signals_file, options.summary_file,
+                       simulates(plan) ? first_epoch_ : 0);
     output_.say("session '" + launch.session + "' in DDS domain " +
                 std::to_string(registration.domain()) +
                 (network.is_loopback() ? "" : " on " + network.address) +
@@ -89,6 +99,7 @@ class Session : public Watcher {
   void restarts(std::size_t process, const Ending& ending,
                 std::chrono::milliseconds delay) override {
     take_statuses();
+    is_down_[process] = true;
     const PlannedNode& node = plan_.nodes[process];
     board_.begin_life(node.name, static_cast<std::uint64_t>(node::monotonic_nsec()));
     output_.say(node.name + ": " + ending.text() + "; it starts again in " + in_seconds(delay) +
@@ -102,14 +113,19 @@ class Session : public Watcher {
     return {node.name + (*paused ? ".paused=true" : ".paused=false")};
   }
 
-  void restarted(std::size_t process) override { ++restarts_[process]; }
+  void restarted(std::size_t process) override {
+    is_down_[process] = false;
+    ++restarts_[process];
+  }
 
   bool ended(std::size_t process, const Ending& ending, bool stopping) override {
     const PlannedNode& node = plan_.nodes[process];
     present_[process] = false;
+    is_down_[process] = false;
     registration_.remove_node(node.name);
     const bool failed = ending.exit_code() != kSuccess;
     if (node.required && result_ == kSuccess) result_ = ending.exit_code();
+    if (failed && is_needed_[process]) has_lost_node_ = true;
     if (stopping) {
       if (failed && !killed_[process]) output_.say(node.name + ": " + ending.text());
       return node.required;
@@ -161,9 +177,12 @@ class Session : public Watcher {
       if (restarts_[i] > 0)
         output_.print(names[i] + " was started again " + config::count_text(restarts_[i], "time"));
     }
-    for (const PlannedNode& node : plan_.nodes) {
-      if (has_failed(node.name) && node.required && result_ == kSuccess) result_ = kFailure;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (is_down_[i]) output_.print(names[i] + " was down at the end");
+      if (is_needed_[i] && (is_down_[i] || has_failed(names[i]))) has_lost_node_ = true;
     }
+    if (has_lost_node_ && result_ == kSuccess) result_ = kFailure;
+    if (has_lost_node_ && failure_ == kSuccess) failure_ = kFailure;
     if (signals_) {
       output_.print(signals_->finish(ends_of_nodes()));
       if (!signals_->is_whole() && result_ == kSuccess) result_ = kFailure;
@@ -182,12 +201,14 @@ class Session : public Watcher {
   /// How each node stood at the end, for the summary.
   std::vector<NodeEnd> ends_of_nodes() const {
     std::vector<NodeEnd> ends;
-    for (const PlannedNode& node : plan_.nodes) {
+    for (std::size_t i = 0; i < plan_.nodes.size(); ++i) {
+      const PlannedNode& node = plan_.nodes[i];
       const msg::NodeStatus* status = board_.find(node.name);
       NodeEnd& end = ends.emplace_back(NodeEnd{.name = node.name, .program = node.program});
+      end.has_failed = is_needed_[i] && (is_down_[i] || has_failed(node.name));
+      if (is_down_[i]) end.reason = "was down at the end";
       if (status == nullptr) continue;
       end.phase = node::word_of(status->phase());
-      end.has_failed = node.required && has_failed(node.name);
       const bool is_device = status->kind() == msg::KIND_DEVICE_NODE;
       if (has_failed(node.name) || (is_device && node::has_ended(status->phase())))
         end.reason = status->text();
@@ -198,10 +219,11 @@ class Session : public Watcher {
   /// What a node that starts again has lost, and what it keeps.
   std::string loss_of(const PlannedNode& node) const {
     if (node.program != "sim_node") return "";
-    const bool was_paused = board_.was_paused(node.name).value_or(false);
-    return std::string(
-               " and begins at the start of the scene; what `load` and `set` changed is lost") +
-           (was_paused ? "; it was paused, and stays so until `resume`" : "");
+    const std::optional<bool> was_paused = board_.was_paused(node.name);
+    std::string text = " and begins at the start of the scene";
+    if (was_paused) text += "; what `load` and `set` changed is lost";
+    if (was_paused.value_or(false)) text += "; it was paused, and stays so until `resume`";
+    return text;
   }
 
   void stop() {
@@ -294,6 +316,7 @@ class Session : public Watcher {
   node::SessionRegistration& registration_;
   NodeOutput output_;
   OtherNodes others_;
+  std::uint64_t first_epoch_;  // nodes that this launcher starts begin later [ns]
   StatusBoard board_;
   std::optional<machine::TimerWatch> timers_;  // in realtime: elsewhere no tick is late
   MachineWatch machine_{[this] { return timers_ ? timers_->figures() : machine::TimerFigures{}; }};
@@ -304,12 +327,15 @@ class Session : public Watcher {
   std::set<std::string> twins_;               // nodes that another host runs as well
   std::vector<bool> present_;                 // runs, or starts again
   std::vector<bool> killed_;
+  std::vector<bool> is_needed_;  // the run fails without it
   std::vector<std::uint64_t> restarts_;
+  std::vector<bool> is_down_;  // waits to be started again
   Clock::time_point started_;
   std::optional<Clock::time_point> counted_from_;
-  bool stopped_ = false;    // a required node, the duration or a signal has ended the session
-  int result_ = kSuccess;   // of the first required node that ended
-  int failure_ = kSuccess;  // of the first node that failed
+  bool stopped_ = false;        // a required node, the duration or a signal has ended the session
+  int result_ = kSuccess;       // of the first required node that ended
+  int failure_ = kSuccess;      // of the first node that failed
+  bool has_lost_node_ = false;  // one that the run needs has failed, or was down at the end
 };
 
 }  // namespace

@@ -21,13 +21,15 @@ constexpr std::size_t kMaxWaiting = 64;  // batches of a scene that has not been
 
 }  // namespace
 
-SignalRows::SignalRows(const std::string& table_file, const std::string& summary_file)
-    : table_path_(table_file) {
+SignalRows::SignalRows(const std::string& table_file, const std::string& summary_file,
+                       std::uint64_t first_epoch)
+    : table_path_(table_file), first_epoch_(first_epoch) {
   if (!table_file.empty()) table_file_.emplace(table_file);
   if (!summary_file.empty()) summary_file_.emplace(summary_file);
 }
 
 void SignalRows::begin(const msg::SceneDescription& description) {
+  if (description.epoch() < first_epoch_) return;
   // A description comes again when the reader finds its writer again.
   const bool is_known = description.epoch() == epoch_ && description.version() == version_;
   if (starts_ > 0 && is_known && !is_over_) return;
@@ -75,6 +77,7 @@ void SignalRows::lose_table(const std::string& reason) {
 }
 
 bool SignalRows::add(const msg::SceneSignals& batch) {
+  if (batch.epoch() < first_epoch_) return true;
   if (starts_ == 0 || batch.epoch() != epoch_ || batch.version() != version_) return false;
   const std::size_t columns = names_.size();
   if (is_over_ || batch.rate() != msg::RATE_GESTURE || columns == 0 ||
@@ -157,8 +160,8 @@ std::string SignalRows::text() const {
 }
 
 SignalLog::SignalLog(dds::Participant& participant, const std::string& table_file,
-                     const std::string& summary_file)
-    : rows_(table_file, summary_file),
+                     const std::string& summary_file, std::uint64_t first_epoch)
+    : rows_(table_file, summary_file, first_epoch),
       descriptions_(participant, dds::Topic::kDescription),
       signals_(participant, dds::Topic::kSignals),
       thread_([this] { loop(); }) {}

@@ -30,8 +30,11 @@ struct NodeEnd {
 /// Rows of signals from batches of `scene/signals`, and what of them never came.
 class SignalRows {
  public:
-  /// A path is empty when the file is not wanted. @throws UsageError when a file cannot be made.
-  SignalRows(const std::string& table_file, const std::string& summary_file);
+  /// A path is empty when the file is not wanted.
+  /// @param first_epoch  a scene of a sim_node that began before is another session's
+  /// @throws UsageError when a file cannot be made.
+  SignalRows(const std::string& table_file, const std::string& summary_file,
+             std::uint64_t first_epoch = 0);
 
   /// The scene whose rows follow. One with other signals ends the table.
   void begin(const msg::SceneDescription& description);
@@ -61,6 +64,7 @@ class SignalRows {
   std::vector<std::string> names_;
   std::vector<std::string> units_;
   std::vector<ColumnSummary> summaries_;
+  std::uint64_t first_epoch_;
   std::uint64_t epoch_ = 0;
   std::uint64_t version_ = 0;
   double step_rate_hz_ = 0.0;
@@ -75,8 +79,9 @@ class SignalRows {
 /// Reads the signals of a session in a thread of its own.
 class SignalLog {
  public:
+  /// @param first_epoch  as SignalRows
   SignalLog(dds::Participant& participant, const std::string& table_file,
-            const std::string& summary_file);
+            const std::string& summary_file, std::uint64_t first_epoch);
   ~SignalLog();
   SignalLog(const SignalLog&) = delete;
   SignalLog& operator=(const SignalLog&) = delete;

@@ -31,8 +31,8 @@ class StatusBoard {
   /// was_paused(). @param first_epoch  as above
   void begin_life(const std::string& node, std::uint64_t first_epoch);
 
-  /// Whether a sim_node was paused when it last said how it stands, in whatever life of it; nothing
-  /// before it has.
+  /// True if the newest status of a sim_node that played, in this or an earlier life, is `paused`;
+  /// nothing without one.
   std::optional<bool> was_paused(const std::string& node) const;
 
   /// The session is being stopped: from now on no node answers for the silence of another, which

@@ -2,6 +2,7 @@
 // second one does not disturb it.
 #include <regex>
 
+#include "node/instance_lock.h"
 #include "node/session_registry.h"
 #include "tests/cli/fake_session.h"
 
@@ -74,6 +75,29 @@ TEST_F(RunDomain, IsRefusedToASecondRunOfTheSession) {
                                   std::to_string(first->id()) +
                                   "); stop it, or give this one session=NAME\n");
   EXPECT_EQ(first->wait(std::chrono::milliseconds(0)), -1) << "the first goes on";
+}
+
+TEST_F(RunDomain, HasNoSecondNodeOfANameOfAnotherUser) {
+  for (const auto& [lock, node] :
+       {std::pair("sim_node", "a sim_node"), std::pair("key", "a node named 'key'")}) {
+    FakeSession session;
+    session.announce();
+    const std::string name = "cordis/" + std::to_string(own_domain()) + "/fake/" + lock;
+    const int held = node::try_to_lock(name.c_str());  // as the node of another user does
+    ASSERT_GE(held, 0);
+
+    const auto run = session.start();
+
+    EXPECT_EQ(end_of(*run), 1);
+    EXPECT_EQ(count_of(run->output(), "session 'fake' already runs in DDS domain " +
+                                          std::to_string(own_domain()) + " with " + node +
+                                          " of another user; stop it, or give this one "
+                                          "session=NAME\n"),
+              1u)
+        << run->output();
+    EXPECT_EQ(count_of(run->output(), "| pid"), 0u) << "nothing was started\n" << run->output();
+    close(held);
+  }
 }
 
 TEST_F(RunDomain, IsSharedByRunsOfDifferentNodesOfOneSession) {

@@ -46,7 +46,7 @@ TEST_F(RunRespawn, SaysThatASceneBeginsAtItsStart) {
   ASSERT_TRUE(run->wait_for_output("sim    | back\n", kPatience)) << run->output();
   EXPECT_EQ(count_of(run->output(),
                      "cordis | sim: killed by signal 9 (Killed); it starts again in 0.2 s and "
-                     "begins at the start of the scene; what `load` and `set` changed is lost\n"),
+                     "begins at the start of the scene\n"),
             1u)
       << run->output();
   run->signal(SIGTERM);
@@ -93,16 +93,22 @@ TEST_F(RunRespawn, DoesNotStartANodeAgainThatIsDoneOrFindsBadInput) {
 }
 
 TEST_F(RunRespawn, EndsAtOnceWhenItIsStoppedWhileANodeWaits) {
+  const auto summary = session_.directory() / "summary.json";
   session_.node("key", "pid;await;die 9|die 9|die 9");
-  const auto run = session_.start();
+  const auto run = session_.start({"--summary", summary});
   ASSERT_TRUE(wait_for_all(*run));
   release(*run, "key");
   ASSERT_TRUE(run->wait_for_output("it starts again in 5 s\n", kPatience)) << run->output();
 
   run->signal(SIGINT);
 
-  EXPECT_EQ(end_of(*run), 0);
+  EXPECT_EQ(end_of(*run), 1) << "the session needs it";
   const std::string output = run->output();
+  EXPECT_EQ(count_of(output, "key was down at the end\n"), 1u) << output;
+  std::string said;
+  std::getline(std::ifstream(summary), said, '\0');
+  EXPECT_EQ(count_of(said, "\"complete\": false"), 1u) << said;
+  EXPECT_EQ(count_of(said, "\"reason\": \"was down at the end\""), 1u) << said;
   EXPECT_EQ(count_of(output, "cordis | stopping; once more kills\n"), 1u) << output;
   EXPECT_EQ(count_of(output, "cordis | key: "), 3u) << "nothing more is said of it\n" << output;
   EXPECT_EQ(count_of(output, "sim    | stopped\n"), 1u) << output;

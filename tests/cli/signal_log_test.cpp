@@ -42,6 +42,14 @@ msg::SceneSignals rows(std::uint64_t version, std::uint64_t first_step, std::siz
   return batch;
 }
 
+TEST(SignalRows, LeavesOutTheSceneOfASimThatBeganBeforeTheRun) {
+  SignalRows table("", "", /*first_epoch=*/8);
+  table.begin(described(1));
+  EXPECT_TRUE(table.add(rows(1, 8, 100))) << "they wait for no description";
+  EXPECT_EQ(table.row_count(), 0u);
+  EXPECT_EQ(table.text(), "signals: no scene said which it has");
+}
+
 TEST(SignalRows, ADescriptionThatComesAgainBeginsNothing) {
   SignalRows table("", "");
   table.begin(described(1));

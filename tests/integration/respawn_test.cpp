@@ -149,9 +149,9 @@ TEST_F(Respawn, OfAPausedSimGivesNoForceBeforeResume) {
   ASSERT_TRUE(is_felt());
   ASSERT_EQ(ctl("pause"), 0);
   ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_PAUSED));
-  const std::uint64_t told = status_.of("sim").sequence_number();
+  const std::uint64_t first = status_.of("sim").sequence_number();
   ASSERT_TRUE(status_.wait_for("sim", [&](const msg::NodeStatus& status) {
-    return status.sequence_number() > told + 1;  // the launcher has heard of it, too
+    return status.sequence_number() > first + 1;  // the launcher has received one, too
   }));
   const std::uint64_t old_epoch = status_.of("sim").epoch();
   ASSERT_EQ(kill(process_of(launcher_, "sim"), SIGKILL), 0);
