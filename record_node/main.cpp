@@ -41,7 +41,7 @@ class Watch {
   void update(const record::RecorderFigures& done) {
     if (done.dropped > 0 && !done.is_over && !dropped_) {
       dropped_ = true;
-      spdlog::warn("the disk is too slow: messages are dropped, frames before gestures");
+      spdlog::warn("the disk is too slow: messages are lost, frames before gestures");
     }
     if (done.is_over && !over_) {
       over_ = true;
@@ -74,8 +74,8 @@ class Ending {
                  done.messages - done.dropped, done.messages,
                  static_cast<double>(done.file_bytes) / 1e6, done.seconds);
     if (done.dropped + done.lost > 0)
-      spdlog::warn("{} messages dropped before a slow or full disk, {} lost on the way",
-                   done.dropped, done.lost);
+      spdlog::warn("{} messages lost: {} before a slow or full disk, {} on the way",
+                   done.dropped + done.lost, done.dropped, done.lost);
     if (!done.problem.empty()) spdlog::error("{}", done.problem);
     if (done.has_failed) spdlog::error("`cordis recover {}` saves what is in it", file.string());
     return is_good_;
@@ -150,6 +150,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
     commands.start();
     Watch watch;
     while (!node::wait_for_stop(kPollPeriod)) watch.update(recorder.figures());
+    ending.close();  // the last status has the last figures
   }
   return ending.close() ? 0 : 1;
 }

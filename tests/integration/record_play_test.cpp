@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -243,17 +244,29 @@ TEST(RecordPlay, ARecorderThatJoinsInMidSessionHasWhatASessionKeepsForIt) {
 TEST(RecordPlay, ARecorderSaysWhatItHasWhereTheDiskIsFull) {
   const fs::path folder = fresh_folder("record_full");
   const fs::path take = folder / "take.mcap";
+  const fs::path summary = folder / "summary.json";
   std::string command = "trap '' XFSZ; ulimit -f 300; exec";  // a file may have 300 kB
   for (const std::string& word : session_words(take)) command += " '" + word + "'";
-  ChildProcess session({"/bin/bash", "-c", command});
-  session.wait(kPatience);
+  ChildProcess session({"/bin/bash", "-c", command + " --summary '" + summary.string() + "'"});
+  EXPECT_EQ(session.wait(kPatience), 1) << "--record has no whole take";
+  std::string said;
+  std::getline(std::ifstream(summary), said, '\0');
+  EXPECT_NE(said.find("\"complete\": false"), std::string::npos) << said;
   const mcap::Reader reader(take);
   EXPECT_TRUE(reader.is_whole()) << reader.damage();
   const std::string stored = std::to_string(reader.statistics().message_count);
-  for (const std::string& sentence :
-       {"there is no room for more of " + take.string(),
-        take.string() + ": " + stored + " messages of ", std::string("dropped before a slow")})
+  for (const std::string& sentence : {"there is no room for more of " + take.string(),
+                                      take.string() + ": " + stored + " messages of ",
+                                      std::string(" before a slow or full disk, 0 on the way")})
     EXPECT_NE(session.output().find(sentence), std::string::npos) << session.output();
+  std::smatch lost;
+  const std::string output = session.output();
+  ASSERT_TRUE(std::regex_search(output, lost, std::regex(R"((\d+) messages lost: )"))) << output;
+  std::smatch row;
+  ASSERT_TRUE(std::regex_search(output, row, std::regex(R"(\nrecord +- +- +- +(\d+) )")) ||
+              std::regex_search(output, row, std::regex(R"(\nrecord +\S+ +- +- +(\d+) )")))
+      << output;
+  EXPECT_EQ(row[1], lost[1]) << "the table has the last figures";
   fs::remove_all(folder);
 }
 
