@@ -7,9 +7,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
+#include "cli/exit_code.h"
 #include "cli/session_address.h"
 #include "node/terminal_text.h"
 
@@ -25,13 +27,34 @@ bool reader_has_gone() {
 
 }  // namespace
 
+void hold_place_of_output() {
+  if (fcntl(STDOUT_FILENO, F_GETFD) >= 0) return;
+  const int file = open("/dev/null", O_RDONLY);
+  if (file < 0 || file == STDOUT_FILENO) return;
+  dup2(file, STDOUT_FILENO);
+  close(file);
+}
+
+int end_output(const std::string& program, int exit_code) {
+  try {
+    flush_output();
+  } catch (const std::runtime_error& error) {
+    node::print_text(stderr, program + ": " + error.what() + "\n");
+    return exit_code == kSuccess ? kFailure : exit_code;
+  }
+  return exit_code;
+}
+
 bool flush_output() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
   const int reason = errno;
   if (reason == EPIPE || reader_has_gone()) return false;
-  throw std::runtime_error(std::string("cannot write what came: ") +
-                           std::strerror(reason != 0 ? reason : EIO));
+  std::clearerr(stdout);
+  __fpurge(stdout);  // said once
+  // The reason of a buffer that could not be written earlier is gone.
+  throw std::runtime_error("cannot write the output" +
+                           (reason != 0 ? std::string(": ") + std::strerror(reason) : ""));
 }
 
 SilenceNote::SilenceNote(std::string verb, std::string session, std::string pattern,

@@ -1,4 +1,5 @@
-// cli/live_output.h -- standard output of a verb that prints while a session runs.
+// cli/live_output.h -- standard output: what came of it, and of a verb that prints while a session
+// runs.
 #pragma once
 
 #include <chrono>
@@ -8,6 +9,15 @@
 #include "node/dds/participant.h"
 
 namespace cordis::cli {
+
+/// Before anything is opened. Where standard output is closed, a file that nothing can be written
+/// into has its place, so that no other file gets it.
+void hold_place_of_output();
+
+/// Hands on what is left of what was printed.
+/// @param program  whose sentence it is when that cannot be written
+/// @return `exit_code`, and kFailure in the place of kSuccess after that sentence
+int end_output(const std::string& program, int exit_code);
 
 /// Hands on what was printed. @return false when its reader has gone, as `head` does
 /// @throws std::runtime_error when it cannot be written for another reason, as on a full disk

@@ -179,7 +179,7 @@ TEST_F(Ask, EndsWithoutAWordWhenItsReaderHasGone) {
 
 TEST_F(Ask, SaysWhenItsOutputFindsNoRoom) {
   ends("cordis echo " + name_ + " lab/count --idl " + idl_ + " > /dev/full", 1,
-       "cannot write what came: No space left on device");
+       "cannot write the output: No space left on device");
   ends("cordis hz " + name_ + " > /dev/full", 1, "No space left on device");
 }
 
