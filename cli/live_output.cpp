@@ -9,6 +9,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <stdio_ext.h>
 #include <unistd.h>
 
 #include "cli/exit_code.h"
@@ -72,6 +73,10 @@ void SilenceNote::update(std::uint64_t received) {
   has_spoken_ = true;
   reason_ = reason;
   node::print_text(stderr, "cordis " + verb_ + ": " + text() + "\n");
+}
+
+bool SilenceNote::has_spoken() const {
+  return has_spoken_ && participant_.mismatch() == reason_;
 }
 
 std::string SilenceNote::text() const {

@@ -34,6 +34,8 @@ class SilenceNote {
 
   /// @param received  how many messages have come since it was made
   void update(std::uint64_t received);
+  /// True if it has said so, and given the reason that is known now.
+  bool has_spoken() const;
   /// The sentence, and what of the session cannot be received.
   std::string text() const;
 

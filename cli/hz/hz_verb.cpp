@@ -14,6 +14,7 @@
 
 #include "cli/duration.h"
 #include "cli/exit_code.h"
+#include "cli/hz/traffic.h"
 #include "cli/live_output.h"
 #include "cli/session_words.h"
 #include "cli/topic_listener.h"
@@ -33,51 +34,25 @@ struct HzWords {
   std::string duration;
 };
 
-/// What came on a topic since the last table.
-struct Traffic {
-  std::uint64_t messages = 0;
-  std::uint64_t bytes = 0;
-  std::uint64_t missing = 0;  // numbers of the writers that did not come
-  std::map<dds::WriterId, std::uint64_t> sequence;
-  std::map<dds::WriterId, std::int64_t> time_nsec;
-  std::uint64_t intervals = 0;
-  double shortest_s = 0.0;
-  double longest_s = 0.0;
+std::int64_t utc_nsec() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
 
-  void add(const ReceivedMessage& message) {
-    ++messages;
-    bytes += message.size;
-    std::uint64_t& last = sequence[message.writer];
-    if (last != 0 && message.sequence > last + 1 && !message.topic.exclusive)
-      missing += message.sequence - last - 1;
-    last = message.sequence;
-    std::int64_t& before = time_nsec[message.writer];
-    if (before != 0) {
-      const double interval = static_cast<double>(message.reception_nsec - before) * 1e-9;
-      shortest_s = intervals == 0 ? interval : std::min(shortest_s, interval);
-      longest_s = std::max(longest_s, interval);
-      ++intervals;
-    }
-    before = message.reception_nsec;
-  }
-  void begin_again() {
-    messages = bytes = missing = intervals = 0;
-    shortest_s = longest_s = 0.0;
-  }
-};
-
-void print(std::map<std::string, Traffic>& topics, double seconds) {
+void print(std::map<std::string, Traffic>& topics) {
+  const std::int64_t now_nsec = utc_nsec();
   std::size_t width = 5;
   for (const auto& [name, traffic] : topics) width = std::max(width, name.size());
   std::printf("%-*s %10s %12s %12s %9s %8s\n", static_cast<int>(width), "topic", "rate [Hz]",
               "min [ms]", "max [ms]", "kB/s", "missing");
   for (auto& [name, traffic] : topics) {
     std::printf("%-*s %10.1f %12.3f %12.3f %9.1f %8llu\n", static_cast<int>(width),
-                node::terminal_text(name).c_str(), static_cast<double>(traffic.messages) / seconds,
-                traffic.shortest_s * 1e3, traffic.longest_s * 1e3,
-                static_cast<double>(traffic.bytes) / seconds / 1e3,
-                static_cast<unsigned long long>(traffic.missing));
-    traffic.begin_again();
+                node::terminal_text(name).c_str(), traffic.messages_per_s(now_nsec),
+                traffic.shortest_s() * 1e3, traffic.longest_s() * 1e3,
+                traffic.bytes_per_s(now_nsec) / 1e3,
+                static_cast<unsigned long long>(traffic.missing()));
+    traffic.begin_again(now_nsec);
   }
 }
 
@@ -100,11 +75,14 @@ int hz(const HzWords& words) {
     over = duration && now >= began + *duration;
     // What came since the last table is shown at the end, too.
     if (topics.empty() || (now < table + kTable && !over)) continue;
-    print(topics, std::chrono::duration<double>(now - table).count());
+    print(topics);
     table = now;
     if (!flush_output()) return kSuccess;
   }
-  if (duration && topics.empty()) throw std::runtime_error(silence.text());
+  if (duration && topics.empty()) {
+    if (silence.has_spoken()) return kFailure;
+    throw std::runtime_error(silence.text());
+  }
   return kSuccess;
 }
 

@@ -1,0 +1,54 @@
+// cli/hz/traffic.cpp
+#include "cli/hz/traffic.h"
+
+#include <algorithm>
+
+namespace cordis::cli {
+
+void Traffic::add(const ReceivedMessage& message) {
+  const auto [found, is_new] = writers_.try_emplace(message.writer);
+  Writer& writer = found->second;
+  if (is_new) {
+    writer.since_nsec = message.reception_nsec;
+  } else {
+    ++writer.messages;
+    writer.bytes += message.size;
+    if (message.sequence > writer.sequence + 1 && !message.topic.exclusive)
+      missing_ += message.sequence - writer.sequence - 1;
+    const double interval = static_cast<double>(message.reception_nsec - writer.last_nsec) * 1e-9;
+    shortest_s_ = intervals_ == 0 ? interval : std::min(shortest_s_, interval);
+    longest_s_ = std::max(longest_s_, interval);
+    ++intervals_;
+  }
+  writer.sequence = message.sequence;
+  writer.last_nsec = message.reception_nsec;
+}
+
+double Traffic::per_s(std::uint64_t Writer::*count, std::int64_t now_nsec) const {
+  double sum = 0.0;
+  for (const auto& [id, writer] : writers_) {
+    const std::int64_t span_nsec = now_nsec - writer.since_nsec;
+    if (span_nsec > 0)
+      sum += static_cast<double>(writer.*count) / (static_cast<double>(span_nsec) * 1e-9);
+  }
+  return sum;
+}
+
+double Traffic::messages_per_s(std::int64_t now_nsec) const {
+  return per_s(&Writer::messages, now_nsec);
+}
+
+double Traffic::bytes_per_s(std::int64_t now_nsec) const {
+  return per_s(&Writer::bytes, now_nsec);
+}
+
+void Traffic::begin_again(std::int64_t now_nsec) {
+  for (auto& [id, writer] : writers_) {
+    writer.since_nsec = std::max(writer.since_nsec, now_nsec);
+    writer.messages = writer.bytes = 0;
+  }
+  missing_ = intervals_ = 0;
+  shortest_s_ = longest_s_ = 0.0;
+}
+
+}  // namespace cordis::cli

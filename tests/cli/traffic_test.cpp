@@ -1,0 +1,54 @@
+// tests/cli/traffic_test.cpp -- the rates that `cordis hz` prints.
+#include "cli/hz/traffic.h"
+
+#include <gtest/gtest.h>
+
+namespace cordis::cli {
+namespace {
+
+constexpr std::int64_t kMsec = 1'000'000;
+
+ReceivedMessage message(std::uint8_t writer, std::uint64_t sequence, std::int64_t msec) {
+  ReceivedMessage received;
+  received.writer[0] = writer;
+  received.sequence = sequence;
+  received.reception_nsec = msec * kMsec;
+  received.size = 100;
+  return received;
+}
+
+TEST(Traffic, TheTimeOfAWriterBeginsWithItsFirstMessage) {
+  Traffic traffic;
+  for (std::uint64_t i = 0; i <= 50; ++i)
+    traffic.add(message(1, 7 + i, 40 + 10 * static_cast<std::int64_t>(i)));
+
+  EXPECT_DOUBLE_EQ(traffic.messages_per_s(540 * kMsec), 100.0);
+  EXPECT_DOUBLE_EQ(traffic.bytes_per_s(540 * kMsec), 10000.0);
+  EXPECT_EQ(traffic.missing(), 0u);
+
+  traffic.begin_again(540 * kMsec);
+  for (std::uint64_t i = 51; i <= 60; ++i)
+    traffic.add(message(1, 7 + i, 40 + 10 * static_cast<std::int64_t>(i)));
+  EXPECT_DOUBLE_EQ(traffic.messages_per_s(640 * kMsec), 100.0);
+  EXPECT_DOUBLE_EQ(traffic.longest_s(), 0.01) << "the one over the table, too";
+}
+
+TEST(Traffic, AddsUpTheRatesOfItsWriters) {
+  Traffic traffic;
+  for (std::int64_t i = 0; i <= 10; ++i) {
+    traffic.add(message(1, static_cast<std::uint64_t>(i) + 1, 100 * i));
+    if (i >= 5) traffic.add(message(2, static_cast<std::uint64_t>(i) + 1, 100 * i));
+  }
+  EXPECT_DOUBLE_EQ(traffic.messages_per_s(1000 * kMsec), 20.0);
+}
+
+TEST(Traffic, CountsWhatDidNotCome) {
+  Traffic traffic;
+  traffic.add(message(1, 1, 0));
+  traffic.add(message(1, 5, 100));
+  EXPECT_EQ(traffic.missing(), 3u);
+  EXPECT_EQ(Traffic().messages_per_s(1000 * kMsec), 0.0);
+}
+
+}  // namespace
+}  // namespace cordis::cli
