@@ -263,7 +263,8 @@ void Device::keep_guardian() const noexcept {
 /// Reports a change of phase.
 void Device::record_phase(const Exchange& exchange) {
   const std::int64_t now = node::monotonic_nsec();
-  if (phases_.note(meter_.phase(), exchange.has_device(), now)) status_.publish_now();
+  if (phases_.note(meter_.phase(), exchange.has_device(), now, exchange.is_taken()))
+    status_.publish_now();
   phases_.report(now);
 }
 

@@ -279,7 +279,7 @@ void Exchange::record_phase(bool in_time) noexcept {
   const bool other =
       answers_.answers_another(config_.force_guard.watchdog_s / age_scale_, clock_());
   const double unanswered_s = static_cast<double>(++unanswered_periods_) / config_.layout.rate_hz;
-  meter_.record_device(present_ || !driver_.has_motors(), other);
+  meter_.record_device(present_ || !driver_.has_motors(), other, is_taken());
   misses_scene_ =
       present_ && answers_.has_any() && !other && unanswered_s > config_.force_guard.watchdog_s;
   if (present_ && in_time) {

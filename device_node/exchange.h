@@ -108,6 +108,8 @@ class Exchange {
   void step() noexcept;
 
   bool has_device() const noexcept { return present_; }  ///< true if the driver has one
+  /// True if it has none because another process drives it.
+  bool is_taken() const noexcept { return !present_ && driver_.is_taken(); }
   /// True if the scene has fallen silent: it answered this exchange, for longer than the watchdog
   /// it has answered no new sample, and no other node gets the answers. Counted in periods: one in
   /// which this loop stalled is not the scene's.

@@ -20,7 +20,8 @@ PhaseWords words_of(Phase phase) noexcept {
     case Phase::kRunning:
       return {msg::PHASE_RUNNING, ""};
     case Phase::kStandby:
-      return {msg::PHASE_STANDBY, "another node plays this device; ready to take over"};
+      return {msg::PHASE_STANDBY,
+              "the scene answers another process that plays this device; ready to take over"};
     case Phase::kLost:
       return {msg::PHASE_LOST, "no answer from the scene in time, or no device; motors at zero"};
     case Phase::kDisconnected:
@@ -32,15 +33,18 @@ PhaseWords words_of(Phase phase) noexcept {
       return {msg::PHASE_FAILED, "the device was never connected"};
     case Phase::kReplaced:
       return {msg::PHASE_STOPPED, "the device was never connected; another node played it"};
+    case Phase::kTaken:
+      return {msg::PHASE_FAILED, "another process drove the device"};
   }
   return {msg::PHASE_FAILED, "unknown phase"};
 }
 
 }  // namespace
 
-void LoopMeter::record_device(bool has_device, bool other_plays) noexcept {
+void LoopMeter::record_device(bool has_device, bool other_plays, bool is_taken) noexcept {
   is_sought_.store(true, std::memory_order_relaxed);
   if (has_device) was_connected_.store(true, std::memory_order_relaxed);
+  is_taken_.store(is_taken, std::memory_order_relaxed);
   if (other_plays) was_replaced_.store(true, std::memory_order_relaxed);
 }
 
@@ -48,7 +52,8 @@ Phase LoopMeter::last_phase() const noexcept {
   const bool missed =
       is_sought_.load(std::memory_order_relaxed) && !was_connected_.load(std::memory_order_relaxed);
   if (!missed) return Phase::kStopped;
-  return was_replaced_.load(std::memory_order_relaxed) ? Phase::kReplaced : Phase::kNeverConnected;
+  if (was_replaced_.load(std::memory_order_relaxed)) return Phase::kReplaced;
+  return is_taken_.load(std::memory_order_relaxed) ? Phase::kTaken : Phase::kNeverConnected;
 }
 
 void LoopMeter::count_tick() noexcept {
@@ -77,7 +82,8 @@ void LoopMeter::publish_latency() noexcept {
 void LoopMeter::fill(msg::NodeStatus& status) const {
   const PhaseWords words = words_of(phase());
   status.phase(words.phase);
-  status.text(words.text);
+  const bool waits = phase() == Phase::kLost && is_taken_.load(std::memory_order_relaxed);
+  status.text(waits ? "another process drives this device; waits until it is free" : words.text);
   status.ticks(ticks());
   late_ticks_.fill(status);
   status.dropped(dropped());

@@ -20,7 +20,8 @@ enum class Phase : std::uint8_t {
   kDisconnected,    ///< the board or the guardian has let go of the motors
   kStopped,         ///< the node is ending as it was asked to
   kNeverConnected,  ///< likewise, and the driver has never had its device
-  kReplaced         ///< likewise; another node has played it
+  kReplaced,        ///< likewise; another node has played it
+  kTaken            ///< likewise; another process drives it
 };
 
 /// Counters of one device. The loop thread writes; fill() may be called from another thread.
@@ -30,8 +31,8 @@ class LoopMeter {
   Phase phase() const noexcept { return phase_.load(std::memory_order_relaxed); }
 
   /// After a tick. @param has_device  the driver has its device. @param other_plays  the scene answers
-  /// another node that plays it
-  void record_device(bool has_device, bool other_plays) noexcept;
+  /// another node that plays it. @param is_taken  another process drives the device
+  void record_device(bool has_device, bool other_plays, bool is_taken = false) noexcept;
 
   /// The phase of a node that ends as it was asked to: kStopped, unless the driver has looked for its
   /// device and never had it.
@@ -65,6 +66,7 @@ class LoopMeter {
   std::atomic<bool> is_sought_{false};  // there has been a tick
   std::atomic<bool> was_connected_{false};
   std::atomic<bool> was_replaced_{false};  // by another node
+  std::atomic<bool> is_taken_{false};      // by another process
   std::atomic<std::uint64_t> ticks_{0};
   node::LateTicks late_ticks_;
   std::atomic<std::uint64_t> dropped_{0};

@@ -16,19 +16,20 @@ PhaseLog::PhaseLog(std::string device, std::string driver, double silence_s)
     : device_(std::move(device)),
       driver_(std::move(driver)),
       silence_s_(silence_s),
-      standby_("another node played '" + device_ + "' with more strength", spdlog::level::info),
+      standby_("another process played '" + device_ + "'", spdlog::level::info),
       let_go_("driver " + driver_ + ": the motors were let go of outside the loop"),
       no_device_("driver " + driver_ + ": the device did not answer"),
       no_scene_("no answer from the scene in time, motors at zero"),
       takes_over_("took over '" + device_ + "'", spdlog::level::info),
       returns_("played again", spdlog::level::info) {}
 
-bool PhaseLog::note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept {
+bool PhaseLog::note(Phase phase, bool has_device, std::int64_t now_nsec, bool is_taken) noexcept {
+  is_taken_ = is_taken;
   had_device_ = had_device_ || has_device;
   if (phase == noted_) return false;
   const bool was_lost = noted_ == Phase::kLost || noted_ == Phase::kDisconnected;
   if (phase == Phase::kStandby && standby_.record(now_nsec)) {
-    spdlog::info("another node plays '{}' with more strength; ready to take over", device_);
+    spdlog::info("the scene answers another process that plays '{}'; ready to take over", device_);
   } else if (phase == Phase::kDisconnected || phase == Phase::kLost) {
     lost_since_nsec_ = now_nsec;
     if (phase == Phase::kLost) {
@@ -59,6 +60,7 @@ void PhaseLog::log_loss(bool has_device, std::int64_t now_nsec) noexcept {
 }
 
 void PhaseLog::log_absence(std::int64_t now_nsec) noexcept {
+  if (is_taken_) return;
   if (!no_device_.record(now_nsec)) return;
   spdlog::warn(
       "driver {}: the device does not answer; trying again. Check its power, its cable, and its "
@@ -78,6 +80,7 @@ void PhaseLog::log_return(std::int64_t now_nsec) noexcept {
 
 void PhaseLog::report(std::int64_t now_nsec) noexcept {
   awaits_first_ = awaits_first_ && !had_device_;
+  if (awaits_first_ && is_taken_) lost_since_nsec_ = now_nsec;
   if (awaits_first_ && now_nsec - lost_since_nsec_ >= kFirstAnswerWithin) {
     awaits_first_ = false;
     log_absence(now_nsec);

@@ -22,8 +22,9 @@ class PhaseLog {
   void start() noexcept { noted_ = Phase::kWaiting; }
 
   /// Notes the present phase. @param has_device  whether the driver has one. @param now_nsec
-  /// CLOCK_MONOTONIC. @return whether it has changed
-  bool note(Phase phase, bool has_device, std::int64_t now_nsec) noexcept;
+  /// CLOCK_MONOTONIC. @param is_taken  another process drives the device, and the driver says so
+  /// @return whether the phase has changed
+  bool note(Phase phase, bool has_device, std::int64_t now_nsec, bool is_taken = false) noexcept;
 
   /// Reports what has repeated itself. To be called at least now and then.
   void report(std::int64_t now_nsec) noexcept;
@@ -39,6 +40,7 @@ class PhaseLog {
   Phase noted_ = Phase::kWaiting;
   std::int64_t lost_since_nsec_ = 0;
   bool had_device_ = false;
+  bool is_taken_ = false;      // by another process
   bool awaits_first_ = false;  // the device has not answered yet, and no line says so
   bool has_played_ = false;
   node::RepeatedEvent standby_;

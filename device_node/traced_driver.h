@@ -37,6 +37,7 @@ class TracedDriver final : public Driver {
   std::string address() const override { return driver_->address(); }
   BoardWatchdog board_watchdog() const noexcept override { return driver_->board_watchdog(); }
   bool is_let_go() const noexcept override { return driver_->is_let_go(); }
+  bool is_taken() const noexcept override { return driver_->is_taken(); }
   bool is_yielding() const noexcept override { return driver_->is_yielding(); }
   PointerPort* pointer_port() noexcept override { return driver_->pointer_port(); }
   void stop() noexcept override;

@@ -71,6 +71,8 @@ class Driver {
 
   /// Where its device is plugged in, for a person; empty without one.
   virtual std::string address() const { return {}; }
+  /// True if the device is not there because another process drives it.
+  virtual bool is_taken() const noexcept { return false; }
 
   virtual BoardWatchdog board_watchdog() const noexcept { return BoardWatchdog::kLetsGo; }
 

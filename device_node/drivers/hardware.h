@@ -56,6 +56,7 @@ class Hardware : public Driver {
   bool write(const AxisValues& commanded) noexcept override;
   bool has_motors() const noexcept override { return true; }
   std::string address() const override { return wire_->address(); }
+  bool is_taken() const noexcept override { return wire_->is_taken(); }
   bool is_let_go() const noexcept override { return is_let_go_; }
   void stop() noexcept override;
 

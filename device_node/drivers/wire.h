@@ -32,6 +32,8 @@ class Wire {
   [[nodiscard]] bool open() noexcept;  ///< false when the device is not there, or not to be had
   void close() noexcept;
   bool is_open() const noexcept { return file_ >= 0; }
+  /// True if another process had it at the last open().
+  bool is_taken() const noexcept { return !mine_; }
 
   /// Hands over all of it; false when the device takes no more, or has gone: then the wire is
   /// closed. Of a message that was taken in part the rest goes first at the next call, so that the

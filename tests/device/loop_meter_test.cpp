@@ -70,6 +70,13 @@ TEST(LoopMeter, EndsWithTheDeviceThatWasNeverConnected) {
   EXPECT_EQ(status_of(meter).phase(), msg::PHASE_FAILED);
   EXPECT_EQ(status_of(meter).text(), "the device was never connected");
 
+  meter.record_device(false, false, /*is_taken=*/true);
+  meter.set_phase(Phase::kLost);
+  EXPECT_EQ(status_of(meter).text(), "another process drives this device; waits until it is free");
+  meter.set_phase(meter.last_phase());
+  EXPECT_EQ(status_of(meter).phase(), msg::PHASE_FAILED);
+  EXPECT_EQ(status_of(meter).text(), "another process drove the device");
+
   meter.record_device(false, true);
   EXPECT_EQ(meter.last_phase(), Phase::kReplaced);
   meter.set_phase(meter.last_phase());

@@ -32,7 +32,7 @@ TEST(PhaseLog, ReportsEachChangeInItsWords) {
 plays again after 0.250 s
 driver kfb1: the device does not answer; trying again. Check its power, its cable, and its address in the device file
 driver kfb1: the motors have been let go of outside the loop; forces return by the ramp
-another node plays 'keyboard' with more strength; ready to take over
+the scene answers another process that plays 'keyboard'; ready to take over
 takes over 'keyboard'
 )");
 }
@@ -69,6 +69,22 @@ TEST(PhaseLog, WarnsOnceOfADeviceThatIsMissingFromTheStart) {
       R"(driver kfb1: the device does not answer; trying again. Check its power, its cable, and its address in the device file
 plays 'keyboard'
 )");
+}
+
+TEST(PhaseLog, AsksForNoCableOfADeviceThatAnotherProcessDrives) {
+  const test::CapturedLog log;
+  PhaseLog phases = key_log();
+  for (std::int64_t now = 0; now <= 9000 * kMillisecond; now += 100 * kMillisecond) {
+    phases.note(Phase::kLost, false, now, /*is_taken=*/true);
+    phases.report(now);
+  }
+  EXPECT_EQ(log.lines(""), "");
+  for (std::int64_t now = 9000 * kMillisecond; now <= 13000 * kMillisecond;
+       now += 100 * kMillisecond) {
+    phases.note(Phase::kLost, false, now);  // it is free, and not there
+    phases.report(now);
+  }
+  EXPECT_NE(log.lines("").find("the device does not answer"), std::string::npos);
 }
 
 TEST(PhaseLog, CountsAPhaseThatComesAndGoes) {
