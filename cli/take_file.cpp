@@ -50,11 +50,7 @@ std::unique_ptr<mcap::Writer> make_take(const std::string& file, const std::stri
   if (!named) throw UsageError("--compression is none, lz4 or zstd, not '" + compression + "'");
   config.compression = *named;
   config.library = "cordis " CORDIS_VERSION;
-  try {
-    return std::make_unique<mcap::Writer>(file, config);
-  } catch (const mcap::FileError& error) {
-    throw UsageError(error.what());
-  }
+  return std::make_unique<mcap::Writer>(file, config);
 }
 
 void finish_take(const std::string& verb, mcap::Writer& writer,

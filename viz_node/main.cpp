@@ -66,6 +66,7 @@ std::string page_token() {
 
 int run(const node::NodeStart& start, config::Problems& problems) {
   const viz::VizConfig config = viz::read_viz_config(*start.node, problems);
+  viz::check_address(config, problems);
   viz::check_scene_files(start.launch, config, problems);
   node::report(problems);
   if (start.check_only) return 0;

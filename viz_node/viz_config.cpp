@@ -1,7 +1,12 @@
 // viz_node/viz_config.cpp
 #include "viz_node/viz_config.h"
 
+#include <cerrno>
+
 #include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "node/config/mapping_reader.h"
 #include "node/config/regular_file.h"
@@ -22,6 +27,7 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
   VizConfig viz;
   config::MappingReader reader(node.section, "viz_node '" + node.name + "'", problems);
   viz.address = reader.optional_text("address", viz.address);
+  viz.address_place = reader.has("address") ? reader.place_of("address") : node.place;
   viz.port = static_cast<int>(reader.optional_integer("port", viz.port, 0, 65535));
   viz.rate_hz = reader.optional_number("rate_hz", viz.rate_hz, config::Range::between(1.0, 240.0));
   for (const config::Value& scene : reader.optional_sequence("scenes").items()) {
@@ -41,6 +47,24 @@ VizConfig read_viz_config(const config::LaunchNode& node, config::Problems& prob
   }
   reader.finish();
   return viz;
+}
+
+void check_address(const VizConfig& viz, config::Problems& problems) {
+  sockaddr_in v4{};
+  v4.sin_family = AF_INET;
+  sockaddr_in6 v6{};
+  v6.sin6_family = AF_INET6;
+  const bool is_v4 = inet_pton(AF_INET, viz.address.c_str(), &v4.sin_addr) == 1;
+  if (!is_v4 && inet_pton(AF_INET6, viz.address.c_str(), &v6.sin6_addr) != 1) return;
+  const int file = socket(is_v4 ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (file < 0) return;
+  const int bound = is_v4 ? bind(file, reinterpret_cast<const sockaddr*>(&v4), sizeof v4)
+                          : bind(file, reinterpret_cast<const sockaddr*>(&v6), sizeof v6);
+  const bool is_elsewhere = bound != 0 && errno == EADDRNOTAVAIL;
+  close(file);
+  if (is_elsewhere)
+    problems.error(viz.address_place, "this machine has no address " + viz.address,
+                   "127.0.0.1 for this machine alone, 0.0.0.0 for the whole network");
 }
 
 void check_scene_files(const config::Launch& launch, const VizConfig& viz,

@@ -60,7 +60,17 @@ std::string check_document(const Certificate& authority, const fs::path& file) {
 
 std::string keyring_of(const config::Launch& launch) {
   if (launch.security.empty()) return {};
-  return fs::absolute(launch.resolve(launch.security)).lexically_normal().string();
+  const std::string folder =
+      fs::absolute(launch.resolve(launch.security)).lexically_normal().string();
+  std::error_code unknown;
+  if (!fs::exists(folder, unknown)) {
+    config::Problems problems;
+    problems.error({launch.file, 0, 0},
+                   "security: there is no folder '" + folder + "' with the keys of the session",
+                   "`cordis keys new " + folder + "` makes one");
+    problems.throw_if_any();
+  }
+  return folder;
 }
 
 Identity identity_in(const fs::path& folder, const std::vector<Role>& roles,

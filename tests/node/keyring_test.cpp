@@ -267,6 +267,23 @@ TEST_F(Keyring, LimitsAKeyToItsSessionsWhereThatIsAsked) {
   EXPECT_THAT(some, Not(HasSubstr("*")));
 }
 
+TEST_F(Keyring, ThatDoesNotExistIsAnErrorOfTheLaunchFile) {
+  config::Launch launch;
+  launch.file = "launch.yaml";
+  EXPECT_EQ(keyring_of(launch), "");
+  launch.security = ring_.string();
+  EXPECT_EQ(keyring_of(launch), ring_.string());
+  launch.security = (folder_ / "none").string();
+  try {
+    static_cast<void>(keyring_of(launch));
+    FAIL() << "it names keys";
+  } catch (const config::ConfigError& error) {
+    EXPECT_THAT(error.problems().front().text(), HasSubstr("there is no folder '"));
+    EXPECT_THAT(error.problems().front().text(),
+                HasSubstr("`cordis keys new " + launch.security + "` makes one"));
+  }
+}
+
 TEST(Certificate, SaysOfAFolderWithoutKeysThatItHasNone) {
   char name[] = "/tmp/cordis-test-XXXXXX";
   const fs::path folder = mkdtemp(name);

@@ -51,6 +51,19 @@ foxglove: true
   EXPECT_EQ(viz.rights.scenes, (std::vector<std::string>{"a.yaml", "b.yaml"}));
 }
 
+TEST(VizConfig, RefusesAnAddressThatThisMachineDoesNotHave) {
+  for (const std::string here : {"127.0.0.1", "0.0.0.0", "127.8.8.8"}) {
+    config::Problems problems;
+    check_address(read("address: " + here, problems), problems);
+    EXPECT_FALSE(problems.has_errors()) << problems.text();
+  }
+  config::Problems problems;
+  check_address(read("address: 192.0.2.77", problems), problems);  // of documents alone
+  ASSERT_EQ(problems.all().size(), 1u);
+  EXPECT_EQ(problems.all().front().place.column, 10);
+  EXPECT_EQ(problems.all().front().message, "this machine has no address 192.0.2.77");
+}
+
 TEST(VizConfig, WarnsOfAMissingSceneWhereSimNodeMayRunOnAnotherHost) {
   for (const bool has_network : {false, true}) {
     config::Problems problems;

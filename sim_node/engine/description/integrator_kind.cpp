@@ -25,7 +25,10 @@ IntegratorKind integrator_named(const std::string& name) {
   for (const IntegratorKind integrator : kIntegrators) {
     if (name == to_string(integrator)) return integrator;
   }
-  throw std::invalid_argument("no integrator is called '" + name + "'");
+  std::string names;
+  for (const IntegratorKind integrator : kIntegrators)
+    names += (names.empty() ? "" : ", ") + std::string(to_string(integrator));
+  throw std::invalid_argument("no integrator is called '" + name + "': there are " + names);
 }
 
 }  // namespace cordis::engine
