@@ -136,7 +136,7 @@ void RefusedDevices::measure(std::int64_t now_nsec, bool is_measuring) {
   const std::lock_guard text_lock(text_mutex_);
   for (DeviceLoop& loop : loops_) {
     const auto device = std::ranges::find(known_, loop.epoch, &Known::epoch);
-    if (device != known_.end()) loop.answer_delay_s = device->measured_s;
+    if (device != known_.end()) loop.answer_delay_s = counted_delay_s(*device);
   }
 }
 
@@ -148,12 +148,17 @@ void RefusedDevices::report_delay(const Known& device, const DelayInUse& before,
   // A little more is no event for a person.
   const bool grown = periods > DelayInUse::kAtAssumed ||
                      (before.is_measured() && periods > 1.5 * before.periods());
-  if (!(grown ? delays_grown_ : delays_known_).record(now_nsec, *device.measured_s)) return;
+  if (!(grown ? delays_grown_ : delays_known_).record(now_nsec, *counted_delay_s(device))) return;
   spdlog::log(grown ? spdlog::level::warn : spdlog::level::info,
               "{:.3g} % of the answers to the device '{}' take at most {:.0f} us: its limits are "
               "those of a delay of {}",
-              100.0 * delays_->quantile(), name_of(device), 1e6 * *device.measured_s,
+              100.0 * delays_->quantile(), name_of(device), 1e6 * *counted_delay_s(device),
               periods_text(periods));
+}
+
+std::optional<double> RefusedDevices::counted_delay_s(const Known& device) {
+  if (!device.measured_s) return std::nullopt;
+  return device.delay.periods() / device.limits.rate_hz;
 }
 
 std::string RefusedDevices::name_of(const Known& device) const {
@@ -230,7 +235,7 @@ std::vector<DeviceLoop> RefusedDevices::find_loops(std::string& delay_text) cons
     const Known& device = known_[i];
     const auto demand = std::ranges::find(demands_, device.device_id, &PortDemand::device_id);
     if (demand == demands_.end()) continue;
-    const DeviceLoop loop{demand->device, device.epoch, device.measured_s,
+    const DeviceLoop loop{demand->device, device.epoch, counted_delay_s(device),
                           device.verdict->supported_stiffness};
     const auto is_same = [&loop](const DeviceLoop& other) { return other.device == loop.device; };
     if (std::ranges::any_of(loops, is_same)) continue;

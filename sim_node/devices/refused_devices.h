@@ -23,7 +23,8 @@ namespace cordis::sim {
 struct DeviceLoop {
   std::string device;
   std::uint64_t epoch = 0;
-  std::optional<double> answer_delay_s;       ///< as measured; empty: not yet, or not in real time
+  /// The delay that its limits count; empty: not measured yet, or not in real time.
+  std::optional<double> answer_delay_s;
   std::optional<double> supported_stiffness;  ///< least of its ports of role mass [N/m]
 };
 
@@ -119,6 +120,8 @@ class RefusedDevices {
   std::vector<DeviceLoop> find_loops(std::string& delay_text) const;
   void report_delay(const Known& device, const DelayInUse& before, std::int64_t now_nsec);
   std::string name_of(const Known& device) const;
+  /// The delay of its limits, which has room over what is measured; nothing before that.
+  static std::optional<double> counted_delay_s(const Known& device);
   std::int64_t newest_nsec(std::size_t index) const noexcept {
     return rows_[index].newest_nsec.load(std::memory_order_relaxed);
   }

@@ -355,7 +355,8 @@ TEST(RefusedDevices, AreSupportedOnceTheirAnswersAreMeasuredFastEnough) {
   EXPECT_EQ(devices.text(), "");
   ASSERT_EQ(devices.loops().size(), 1u);
   EXPECT_EQ(devices.loops()[0].device, "keyboard");
-  EXPECT_NEAR(devices.loops()[0].answer_delay_s.value(), 0.2e-3, 0.01e-3);
+  EXPECT_NEAR(devices.loops()[0].answer_delay_s.value(), 0.22e-3, 0.01e-3)
+      << "what is measured, and the room that the limits have";
   // b / (T/2 + 1.1 d T), d as the upper end of its bin
   EXPECT_NEAR(devices.loops()[0].supported_stiffness.value(), 2070.0, 50.0);
 }
