@@ -195,6 +195,9 @@ class Rest {
     step();
   }
 
+  /// From the next hold() on its steps have this length [s].
+  void set_step(double step) { network_.step = step; }
+
   /// One step. @return false where a position is not finite any more
   bool step() {
     ++steps_;
@@ -269,7 +272,37 @@ class Rest {
   bool is_finite_ = true;
 };
 
-/// At the step of the network, from its start.
+/// The length of the steps between two holds. A fast oscillation of a few steps makes the kinetic energy fall
+/// again and again, so that what is slow hardly moves. Steps of another length meet its peak.
+class Pace {
+ public:
+  explicit Pace(double step) : longest_(step), step_(step) {}
+
+  /// @param steps  from one hold to the next
+  /// @return true if the next steps have another length
+  bool changes_after(std::uint64_t steps) {
+    constexpr std::uint64_t kHolds = 100;
+    constexpr std::uint64_t kFewSteps = 6;  // between two of them
+    constexpr double kShortest = 0.25;      // of the longest, which follows it
+    ++holds_;
+    steps_ += steps;
+    if (holds_ < kHolds) return false;
+    const bool changes = steps_ < kFewSteps * holds_;
+    holds_ = 0;
+    steps_ = 0;
+    if (changes) step_ = step_ > kShortest * longest_ ? 0.5 * step_ : longest_;
+    return changes;
+  }
+  double step() const noexcept { return step_; }
+
+ private:
+  double longest_;
+  double step_;
+  std::uint64_t holds_ = 0;
+  std::uint64_t steps_ = 0;
+};
+
+/// At the step of the network and two shorter ones, from its start.
 Settled try_to_settle(const NetworkDescription& network, const Settling& asked) {
   constexpr int kMaxHolds = 200;      // without less force; what still falls takes below 40
   constexpr double kLess = 0.99;      // of the least so far
@@ -278,7 +311,9 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
   double largest = 0.0;
   double least = std::numeric_limits<double>::infinity();
   int holds = 0;
+  Pace pace(network.step);
   for (;;) {
+    const std::uint64_t steps_before = rest.steps();
     rest.hold();
     Settled pose = rest.pose();
     if (!pose.is_finite || pose.force < asked.until || rest.steps() >= asked.max_steps) return pose;
@@ -296,6 +331,7 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
       before = now;
       if (!rest.step()) return rest.pose();
     }
+    if (pace.changes_after(rest.steps() - steps_before)) rest.set_step(pace.step());
   }
 }
 

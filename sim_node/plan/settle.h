@@ -34,7 +34,8 @@ struct Settled {
 bool rest_is_open(const engine::NetworkDescription& network);
 
 /// Lets a network come to rest from its start, without dampers, medium and velocities. It moves by
-/// `cordis` at its step, or a shorter one where that diverges. It is held still whenever its kinetic
+/// `cordis` at its step, or a shorter one where that diverges, and at a half and a quarter of it while few steps
+/// go by between two holds. It is held still whenever its kinetic
 /// energy falls (kinetic damping). Each liaison stays in its state of the start; a
 /// Maxwell element keeps its start force. Ports and what is driven stay, and driven forces are those
 /// of the start, as are laws of the time; one that depends on the place is that of the place. Friction begins with the stretches of the start, and keeps its own while

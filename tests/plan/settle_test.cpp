@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/liaison_graph.h"
 #include "tests/engine/rubbing.h"
 #include "tests/support/rounds.h"
 
@@ -54,6 +56,76 @@ TEST(Settle, HangsAChainBelowItsNail) {
     // each link is out by what is left over K, 1e-9 / 500 m for each mass below it
     EXPECT_NEAR(rest.position[i].y(), y, 11 * 11 * 1e-9 / kStiffness);
     EXPECT_NEAR(rest.position[i].x(), 0.0, 1e-9);
+  }
+}
+
+/// The hanging string of the language: 81 masses of 10 g below a nail.
+TEST(Settle, HangsALongChainAtAnyRateThatHoldsIt) {
+  for (const double number : {0.05, 0.2, 0.4, 0.8}) {  // K' of a link
+    NetworkDescription network = chain(82, false);
+    for (engine::Mat& mat : network.mats) mat.position = Vec3(0, -mat.position.x(), 0);
+    network.step = std::sqrt(number * kMass / kStiffness);
+
+    const Settled rest = settle(network, {1e-6, 20'000});
+
+    EXPECT_LT(rest.force, 1e-6) << number << " in " << rest.steps << " steps";
+    EXPECT_NEAR(rest.position[81].y(), -81 * kRest - 81 * 41 * kMass * kG / kStiffness, 1e-5);
+  }
+}
+
+struct Uniform {
+  std::mt19937 random;
+
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  }
+};
+
+/// A chain, or a net that is fastened at its upper edge and hangs askew, of masses and springs of all sizes.
+NetworkDescription hanging(Uniform& draw) {
+  NetworkDescription network;
+  const bool is_net = draw(0, 1) < 0.5;
+  network.dimension = is_net || draw(0, 1) < 0.5 ? 3 : 2;
+  network.gravity = Vec3(0, -kG, 0);
+  const auto columns = static_cast<std::uint32_t>(is_net ? draw(2, 9) : 1.0);
+  const auto rows = static_cast<std::uint32_t>(is_net ? draw(3, 14) : draw(5, 120));
+  const double slant = draw(-1.0, 1.0);
+  const double usual_mass = std::exp(draw(std::log(1e-3), std::log(1.0)));
+  const double usual_stiffness = draw(200.0, 5000.0) * usual_mass / kMass;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t here = row * columns + column;
+      const Vec3 place(kRest * (column + slant * row), -kRest * row, 0);
+      const MatKind kind = row == 0 ? MatKind::kFixed : MatKind::kMass;
+      network.mats.push_back(
+          {kind, row == 0 ? 0.0 : usual_mass * draw(0.5, 2.0), place, Vec3::Zero()});
+      const auto join = [&](std::uint32_t other) {
+        network.links.push_back({other, here, usual_stiffness * draw(0.5, 2.0), 0.0,
+                                 draw(0.7, 1.0) * (place - network.mats[other].position).norm()});
+      };
+      if (row > 0) join(here - columns);
+      if (column > 0) join(here - 1);
+    }
+  }
+  return network;
+}
+
+TEST(Settle, BringsRandomChainsAndNetsToRestAtAllRatesThatHoldThem) {
+  Uniform draw{std::mt19937(81)};
+  for (int n = 0; n < test::rounds(60); ++n) {
+    NetworkDescription network = hanging(draw);
+    const double part = draw(0.05, 0.95);  // of the K' up to which it is certified
+    network.step = 1e-9;
+    const LiaisonGraph graph = liaison_graph(network);
+    network.step = std::sqrt(part) * stability_of(network, graph).certified.step;
+    double weight = 0.0;
+    for (const engine::Mat& mat : network.mats) weight += mat.mass * kG;
+
+    const Settled rest = settle(network, {1e-8 * weight, 200'000});
+
+    EXPECT_LT(rest.force, 1e-8 * weight)
+        << "round " << n << ": " << network.mats.size() << " MATs at " << part << " of the limit, "
+        << rest.steps << " steps" << (rest.is_rounding ? ", rounding" : "");
   }
 }
 
