@@ -15,8 +15,8 @@ namespace cordis::engine {
 
 /// The largest whole exponent of a power that is made by multiplication alone.
 inline constexpr int kMaxWholePower = 64;
-/// The largest size of an angle [rad] that sin and cos know; beyond it they are NaN.
-inline constexpr double kMaxAngle = 1048576.0;
+/// The largest size of an angle [rad] that a few products reduce; a larger one takes more of them.
+inline constexpr double kMaxShortAngle = 1048576.0;
 
 template <class Owner>
 struct ElementaryFunctions {
@@ -37,12 +37,12 @@ struct ElementaryFunctions {
 
   static double sin(double x) noexcept {
     if (size(x) < 0x1p-27) return x;
-    if (!(size(x) <= kMaxAngle)) return kNan;
+    if (!(size(x) < kInfinity)) return kNan;
     return sin_of_quarter(reduced(x), 0);
   }
 
   static double cos(double x) noexcept {
-    if (!(size(x) <= kMaxAngle)) return kNan;
+    if (!(size(x) < kInfinity)) return kNan;
     return sin_of_quarter(reduced(x), 1);
   }
 
@@ -105,6 +105,10 @@ struct ElementaryFunctions {
     Sum rest;
     std::uint32_t quarters;
   };
+  /// A whole number below 2^192, its highest digit first.
+  struct Digits {
+    std::uint64_t of_32_bits[6];
+  };
 
   static constexpr double kInfinity = __builtin_huge_val();
   static constexpr double kNan = __builtin_nan("");
@@ -117,6 +121,16 @@ struct ElementaryFunctions {
   // pi / 2 in parts of 33 bits, and the rest: their products with whole numbers up to 2^20 are exact
   static constexpr double kQuarter[4] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69,
                                          0x1.b839a252049c1p-104};
+  static constexpr double kQuarterHigh = 0x1.921fb54442d18p+0;  // pi / 2 in two parts
+  static constexpr double kQuarterLow = 0x1.1a62633145c07p-54;
+  static constexpr std::uint64_t kLowHalf = 0xffffffffU;
+  // Behind 64 zeros the binary places of 2 / pi, of which the largest number asks for 1162.
+  static constexpr std::uint64_t kPerQuarter[20] = {
+      0x0000000000000000U, 0xa2f9836e4e441529U, 0xfc2757d1f534ddc0U, 0xdb6295993c439041U,
+      0xfe5163abdebbc561U, 0xb7246e3a424dd2e0U, 0x06492eea09d1921cU, 0xfe1deb1cb129a73eU,
+      0xe88235f52ebb4484U, 0xe99c7026b45f7e41U, 0x3991d639835339f4U, 0x9c845f8bbdf9283bU,
+      0x1ff897ffde05980fU, 0xef2f118b5a0a6d1fU, 0x6d367ecf27cb09b7U, 0x4f463f669e5fea2dU,
+      0x7527bac7ebe5f17bU, 0x3d0739f78a5292eaU, 0x6bfb5fb11f8d5d08U, 0x56033046fc7b6babU};
 
   // Coefficients of Chebyshev approximations, lowest power first.
   // (e^x - 1 - x) / x^2 over x, |x| <= ln 2 / 2
@@ -249,11 +263,78 @@ struct ElementaryFunctions {
   }
 
   static Reduced reduced(double x) noexcept {
+    if (size(x) > kMaxShortAngle) return reduced_by_whole_numbers(x);
     const double k = rounded(x * 0.6366197723675814);  // of pi / 2
     const Sum first = sum(x - k * kQuarter[0], -(k * kQuarter[1]));
     const Sum second = sum(first.high, -(k * kQuarter[2]));
     const Sum rest = sum(second.high, (first.low + second.low) - k * kQuarter[3]);
     return {rest, static_cast<std::uint32_t>(static_cast<int>(k))};
+  }
+
+  /// The way of Payne and Hanek. x is m 2^e with a whole m, and x 2 / pi counts in quarter turns. The digits of 2 / pi
+  /// before those that are kept make whole turns; those behind are too small by 2^-137 of a quarter turn.
+  static Reduced reduced_by_whole_numbers(double x) noexcept {
+    const auto exponent = static_cast<int>(bits_of(x) >> 52 & 2047U);
+    const std::uint64_t m = (bits_of(x) & ((1ULL << 52) - 1)) | 1ULL << 52;
+    const auto place = static_cast<std::size_t>(exponent - 1075 + 62);
+    const std::uint64_t* const first = kPerQuarter + place / 64;
+    const std::size_t shift = place % 64;
+    Digits digits{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint64_t word =
+          shift == 0 ? first[i] : first[i] << shift | first[i + 1] >> (64 - shift);
+      digits.of_32_bits[2 * i] = word >> 32;
+      digits.of_32_bits[2 * i + 1] = word & kLowHalf;
+    }
+    digits = times(digits, m >> 32, m & kLowHalf);
+    auto quarters = static_cast<std::uint32_t>(digits.of_32_bits[0] >> 30);
+    const bool is_above_half = (digits.of_32_bits[0] >> 29 & 1U) != 0;
+    if (is_above_half) ++quarters;
+    const Sum part = fraction_of(digits, is_above_half);
+    Sum rest = product(part.high, kQuarterHigh);
+    rest.low += part.low * kQuarterHigh + part.high * kQuarterLow;
+    rest = ordered_sum(rest.high, rest.low);
+    const bool is_negative = (bits_of(x) >> 63) != 0;
+    if (is_negative) quarters = 0U - quarters;
+    return {is_negative != is_above_half ? Sum{-rest.high, -rest.low} : rest, quarters};
+  }
+
+  /// A number times m = high 2^32 + low, without what is 2^192 and more.
+  static Digits times(const Digits& number, std::uint64_t high, std::uint64_t low) noexcept {
+    Digits product{};
+    std::uint64_t carry = 0;
+    std::uint64_t before = 0;  // the digit to the right
+    for (std::size_t i = 6; i-- > 0;) {
+      const std::uint64_t of_low = number.of_32_bits[i] * low;
+      const std::uint64_t of_high = before * high;  // high has 21 bits
+      const std::uint64_t sum = (of_low & kLowHalf) + (of_high & kLowHalf) + carry;
+      product.of_32_bits[i] = sum & kLowHalf;
+      carry = (sum >> 32) + (of_low >> 32) + (of_high >> 32);
+      before = number.of_32_bits[i];
+    }
+    return product;
+  }
+
+  /// The size of a fraction of 190 bits below two others; less 1 where it is above a half.
+  static Sum fraction_of(Digits digits, bool is_above_half) noexcept {
+    Sum fraction{0.0, 0.0};
+    double unit = 0x1p-30;
+    digits.of_32_bits[0] &= (1U << 30) - 1;
+    if (is_above_half) {  // 2^190 less it
+      std::uint64_t carry = 1;
+      for (std::size_t i = 6; i-- > 0;) {
+        const std::uint64_t sum = (~digits.of_32_bits[i] & kLowHalf) + carry;
+        digits.of_32_bits[i] = sum & kLowHalf;
+        carry = sum >> 32;
+      }
+      digits.of_32_bits[0] &= (1U << 30) - 1;
+    }
+    for (const std::uint64_t digit : digits.of_32_bits) {
+      const Sum sum = ordered_sum(fraction.high, static_cast<double>(digit) * unit);
+      fraction = {sum.high, fraction.low + sum.low};
+      unit *= 0x1p-32;
+    }
+    return fraction;
   }
 
   /// Sine of an angle and of a number of quarter turns more.
