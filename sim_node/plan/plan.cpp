@@ -152,6 +152,17 @@ Stability stability_of_modes(const engine::NetworkDescription& network, LiaisonG
   return stability;
 }
 
+/// The set whose surface lets a ball through, for its energy swings up by the step. What a contact stores where a
+/// mass is, between two steps too, is at most swing_of() times what there is.
+std::optional<LiaisonId> passed_surface(const engine::NetworkDescription& network,
+                                        const LiaisonGraph& graph) {
+  if (!graph.passable) return {};
+  const double longest = certified_bound(network, graph).step;
+  if (network.step >= longest) return {};  // not certain for that reason
+  const double swing = swing_of(network.integrator, network.step / longest);
+  return graph.passing * swing >= 1.0 ? graph.passable : std::nullopt;
+}
+
 /// True if a state acts at some distances and not at others.
 bool lets_go(const engine::LinkState& state) {
   return !state.pulls || !state.pushes || std::holds_alternative<engine::Rings>(state.elasticity);
@@ -228,6 +239,8 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
     return Uncertainty{LiaisonId{LiaisonKind::kSet, graph.contacts.front().set},
                        "no limit is known for a set beside modes"};
   }
+  if (const auto passed = passed_surface(network, graph))
+    return Uncertainty{*passed, kPassesSurface};
   if (const auto solved = friction_beside_dampers(network)) {
     return Uncertainty{
         LiaisonId{LiaisonKind::kStateLink, *solved},
@@ -279,6 +292,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
     stability.diverging_step = diverging_step_of(network);
   }
   stability.bounded = graph.bounded;
+  stability.laws_are_bounded = graph.laws_are_bounded;
   stability.turning = graph.turning;
   // Elsewhere a link turns about by more than it has room for.
   if (network.dimension == 1)

@@ -31,6 +31,7 @@ struct Stability {
   /// Beyond it the scene diverges at the pose of its start, with what acts there [s].
   double diverging_step = 0.0;
   bool bounded = true;             ///< false: the certificate holds within a Reach alone
+  bool laws_are_bounded = true;    ///< false: likewise, as a law has no largest slope
   double step = 0.0;               ///< step of the network [s]
   std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
 

@@ -18,6 +18,7 @@
 #include "tests/engine/surfaces.h"
 #include "tests/plan/networks.h"
 #include "tests/plan/shapes.h"
+#include "tests/support/rounds.h"
 
 namespace cordis::test {
 namespace {
@@ -25,6 +26,8 @@ namespace {
 constexpr double kLayer = kReachOfShapes;
 
 const Surface kRoom = box(Vec3(0.3, 0.4, kNoEnd));
+constexpr double kThrownMass = 0.001;   // [kg]
+constexpr double kThrownRadius = 0.01;  // [m]
 const Surface kTube = cylinder(Vec3::UnitZ(), 0.3);
 
 TEST(HollowBound, CountsTheFacesOfOneCorner) {
@@ -354,6 +357,47 @@ TEST(HollowBound, LetsTheReferenceIntegratorFollowABallOverAPolyline) {
   const auto lines = add_polyline(scene, {Vec3(-1, 0, 0), Vec3(0, 0, 0), Vec3(1, -0.4, 0)});
   touch(scene, 1, contact(1000.0), 0.05, -1.0, lines);
   EXPECT_LT(away_from_reference(scene, 60'000), 1e-3);
+}
+
+/// A ball of 1 g and 10 mm radius that flies at a thin wall.
+NetworkDescription ball_at_thin_wall(double stiffness, double speed, double distance) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {mass(kThrownMass, Vec3(kThrownRadius + distance, 0, 0))};
+  scene.mats[0].velocity = Vec3(-speed, 0, 0);
+  const std::uint32_t wall = add_surface(scene, plane(Vec3::UnitX(), true), Vec3::Zero());
+  StateMachine contact = state_machine(stiffness);
+  contact.states[0].pulls = false;
+  touch(scene, 1, std::move(contact), kThrownRadius, kThrownRadius, {wall});
+  return scene;
+}
+
+TEST(HollowBound, LetsNoBallThroughAThinWallThatIsCertifiedToHoldIt) {
+  Chance draw(7);
+  const auto holds = [](double stiffness, double speed) {
+    const NetworkDescription scene = ball_at_thin_wall(stiffness, speed, 0.001);
+    return plan::stability_of(scene, plan::liaison_graph(scene)).holds();
+  };
+  for (int n = 0; n < rounds(100); ++n) {
+    const double number = draw(0.02, 0.98);  // K'
+    const double stiffness = number * kThrownMass * 1e6;
+    const double fastest = kThrownRadius * std::sqrt(stiffness / kThrownMass);
+    double low = 0.0;
+    double high = 1.1 * fastest;
+    for (int halving = 0; halving < 30; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (holds(stiffness, middle) ? low : high) = middle;
+    }
+    const double share = low * low / (fastest * fastest);  // of the energy that the wall takes
+    EXPECT_GT(share, 0.97 * (1.0 - 0.25 * number)) << number;
+    const double speed = std::sqrt(0.98) * low;
+    for (int phase = 0; phase < 40; ++phase) {
+      World world = make_world(ball_at_thin_wall(stiffness, speed, draw(0.0, 1e-3 * speed)));
+      run(world, 40);
+      ASSERT_GT(world.position(0).x(), 0.0) << number << ' ' << share;
+    }
+  }
 }
 
 }  // namespace

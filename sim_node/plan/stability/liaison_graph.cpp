@@ -125,6 +125,12 @@ std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network
 void note(const NetworkDescription& network, const Slope& slope, LiaisonId liaison,
           LiaisonGraph& graph) {
   graph.bounded = graph.bounded && slope.bounded;
+  if (!slope.bounded && !(slope.law_is_bounded && slope.passing > 0.0))
+    graph.laws_are_bounded = false;
+  if (slope.passing > graph.passing) {
+    graph.passing = slope.passing;
+    graph.passable = liaison;
+  }
   if (slope.uncertainty == nullptr || graph.uncertainty) return;
   graph.uncertainty = {liaison, slope.uncertainty};
   if (is_of_variables(slope.uncertainty))

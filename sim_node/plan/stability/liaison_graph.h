@@ -79,7 +79,11 @@ struct LiaisonGraph {
   std::vector<ContactBound> contacts;
   std::vector<ForceBound> forces;
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
-  bool bounded = true;         ///< false: a law has no largest slope of its own; see Reach
+  bool bounded = true;                   ///< false: a slope holds within the Reach alone
+  bool laws_are_bounded = true;  ///< false: a law has no largest slope of its own; see Reach
+  /// The liaison of surfaces with the largest Slope::passing, of more than 0.
+  std::optional<LiaisonId> passable;
+  double passing = 0.0;        ///< its share of the energy that lets it through
   bool fed_by_forces = false;  ///< driven forces bring in energy that is not in the reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
   Turning turning;

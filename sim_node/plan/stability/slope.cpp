@@ -35,8 +35,6 @@ constexpr const char* kCrushed =
     "the energy of the scene may crush it to length 0, where it turns about between two steps";
 constexpr const char* kPullsWhereNormalFlips =
     "it may pull within the surface, where the normal flips";
-constexpr const char* kJumpsWhereNormalFlips =
-    "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
 constexpr const char* kActsOnAxis =
     "it acts on the axis of a hollow cylinder, where the normal flips";
 constexpr double kNeverPassed = 1e4;  // energies of the fastest ball
@@ -422,6 +420,7 @@ Flip flip_of(const engine::LinkState& state, double rest_length, double flips_at
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach) {
   Slope slope = largest_slope(state_machine, rest_length, 1, reach);
+  slope.law_is_bounded = slope.bounded;
   if (std::isinf(flips_at) || slope.uncertainty != nullptr) return slope;
   const bool rest_moves = moves_rest(state_machine);
   const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
@@ -432,8 +431,8 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
     if (flip.barrier >= kNeverPassed * energy) continue;
     slope.bounded = false;
-    if (flip.barrier <= energy && slope.uncertainty == nullptr)
-      slope.uncertainty = kJumpsWhereNormalFlips;
+    slope.passing = std::max(slope.passing, energy / flip.barrier);
+    if (flip.barrier <= energy && slope.uncertainty == nullptr) slope.uncertainty = kPassesSurface;
   }
   return slope;
 }

@@ -14,6 +14,10 @@ struct Slope {
   double stiffness = 0.0;  ///< [N/m]
   double viscosity = 0.0;  ///< [N s/m]
   bool bounded = true;     ///< false: they hold within the Reach alone
+  /// The energy of a ball over the one that takes it to where the normal of a surface flips; 0 while that is
+  /// negligible, else not bounded.
+  double passing = 0.0;
+  bool law_is_bounded = true;  ///< false: not bounded, and not for `passing` alone
   /// By how much the slope along the liaison varies in one of its states [N/m]: 0 for a spring.
   double variation = 0.0;
   /// The most that the viscosity is over the stiffness in one of its states [s]; infinite where one is viscous and may
@@ -29,6 +33,9 @@ inline constexpr const char* kMayDriveApart =
     "what its law asks for may make it drive its ends apart";
 inline constexpr const char* kMayDriveMotion =
     "what its law asks for may make it drive the motion by a viscosity below 0";
+
+inline constexpr const char* kPassesSurface =
+    "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
 
 /// Slope::damping_ratio of this viscosity and at least this stiffness [s].
 double damping_ratio(double viscosity, double least_stiffness) noexcept;
