@@ -115,6 +115,32 @@ TEST(ForceGuard, RampsUpAnewAfterTheWatchdogHasBitten) {
   EXPECT_DOUBLE_EQ(guard.tick(0.0, {})[0], 1.0);
 }
 
+TEST(ForceGuard, ForgetsForcesThatAreAsOldAsTheWatchdogTime) {
+  ForceGuard guard(force_settings());
+  guard.accept(all(10.0));
+  for (int n = 0; n < 20; ++n) guard.tick(0.0, {});
+
+  EXPECT_EQ(guard.tick(0.02, {}), AxisValues{});
+  EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
+}
+
+TEST(ForceGuard, TheForceOfTheFirstTickMayMoveTheHandOverTheTravel) {
+  ForceGuardSettings watched = force_settings();
+  watched.passivity.active = true;
+  watched.passivity.budget_j = 1e-6;
+  watched.passivity.travel_m = 0.01;
+  ForceGuard guard(watched);
+  guard.accept({1.0});  // it may give 10 mJ
+  double position_m = 0.0;
+  const auto move = [&] { return guard.tick(0.0, {position_m += 0.0005})[0]; };
+
+  for (int n = 0; n < 18; ++n) ASSERT_EQ(move(), 1.0) << n;
+
+  double last = 1.0;
+  for (int n = 0; n < 10; ++n) last = move();
+  EXPECT_LT(last, 1.0) << "a force that gives more makes energy";
+}
+
 TEST(ForceGuard, FadesToZeroWhenAnyForceIsNotANumber) {
   for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
     ForceGuard guard(force_settings());

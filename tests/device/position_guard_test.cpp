@@ -46,6 +46,15 @@ TEST(PositionGuard, LimitsTheSpeed) {
   EXPECT_NEAR(guard.tick(0.0)[0], -0.005, kPositionRounding);
 }
 
+TEST(PositionGuard, FollowsWhatComesLateInTheFirstPeriodToo) {
+  PositionGuard guard(position_settings());
+  guard.accept(at_all_axes(-0.0005));
+  guard.tick(0.0);
+  guard.accept(at_all_axes(-0.001));
+
+  EXPECT_NEAR(guard.tick_again(0.0, 0.0005)[0], -0.001, kPositionRounding);
+}
+
 TEST(PositionGuard, StaysWithinTheTravel) {
   PositionGuard guard(position_settings());
   guard.accept(at_all_axes(-1.0));
