@@ -50,7 +50,13 @@ std::unique_ptr<mcap::Writer> make_take(const std::string& file, const std::stri
   if (!named) throw UsageError("--compression is none, lz4 or zstd, not '" + compression + "'");
   config.compression = *named;
   config.library = "cordis " CORDIS_VERSION;
-  return std::make_unique<mcap::Writer>(file, config);
+  try {
+    return std::make_unique<mcap::Writer>(file, config);
+  } catch (const mcap::FileError& error) {
+    std::error_code unknown;
+    if (std::filesystem::exists(file, unknown)) throw UsageError(error.what());
+    throw;
+  }
 }
 
 void finish_take(const std::string& verb, mcap::Writer& writer,
