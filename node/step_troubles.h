@@ -6,6 +6,7 @@ namespace cordis::node {
 /// What a number of a status or of a simulation counts; the number follows.
 inline constexpr const char* kOverflowedSteps = "steps with more pairs in range than room, slow";
 inline constexpr const char* kForgottenPairs = "states of pairs FORGOTTEN for lack of memory";
-inline constexpr const char* kRefusedInputs = "positions and forces refused, not finite";
+inline constexpr const char* kRefusedInputs =
+    "positions, forces and parameters refused, not finite";
 
 }  // namespace cordis::node

@@ -63,9 +63,12 @@ void StatusSnapshot::record(Runner& runner, const PartnersSeen& partners, std::u
   }
   figures_.is_looping = is_looping_;
   const bool had_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
+  const bool had_refused = figures_.troubles.refused_parameters > 0;
   figures_.troubles = simulation.troubles();
   const bool has_trouble = figures_.troubles.drive_jumps + figures_.troubles.refused_drives > 0;
   if (has_trouble && !had_trouble) spdlog::warn("{}", drive_trouble_text(figures_.troubles));
+  if (figures_.troubles.refused_parameters > 0 && !had_refused)
+    spdlog::warn("{}", parameter_trouble_text(figures_.troubles));
   figures_.version = version;
   figures_.changes = loaded.changes.count(simulation.world());
 }

@@ -143,6 +143,7 @@ class Recording {
         {"failure", result.failure},
         {"passed_bound", result.bound},
         {"driven", result.drives},
+        {"parameters", result.parameters},
         {"overflowed_steps", result.troubles.overflowed_steps},
         {"forgotten_pairs", result.troubles.forgotten_pairs},
         {"refused_inputs", result.troubles.refused_inputs},
@@ -206,6 +207,7 @@ SimulateResult simulate(const SimulateOptions& options, const std::function<bool
   result.bound = session.bound_text();
   result.troubles = session.simulation().troubles();
   result.drives = drive_trouble_text(result.troubles);
+  result.parameters = parameter_trouble_text(result.troubles);
   result.integration_error = session.integration_error_text();
   result.wall_s = std::chrono::duration<double>(WallClock::now() - begun).count();
   result.simulated_s = session.time_s() - session.start_s();

@@ -25,10 +25,11 @@ struct SimulateOptions : TableOptions {
 /// What came of it.
 struct SimulateResult {
   std::vector<std::string> warnings;
-  std::string settled;  ///< sim::settled_text()
-  std::string failure;  ///< empty, or why it ended before its time
-  std::string bound;    ///< OfflineSession::bound_text()
-  std::string drives;   ///< sim::drive_trouble_text()
+  std::string settled;     ///< sim::settled_text()
+  std::string failure;     ///< empty, or why it ended before its time
+  std::string bound;       ///< OfflineSession::bound_text()
+  std::string drives;      ///< sim::drive_trouble_text()
+  std::string parameters;  ///< sim::parameter_trouble_text()
   sim::StepTroubles troubles;
   std::string integration_error;  ///< OfflineSession::integration_error_text()
   bool is_stopped = false;

@@ -50,7 +50,8 @@ int run(const SimulateOptions& options) {
     return signals->take();
   });
   for (const std::string& warning : result.warnings) node::print_text(stderr, warning + "\n");
-  for (const std::string* text : {&result.bound, &result.integration_error, &result.drives}) {
+  for (const std::string* text :
+       {&result.bound, &result.integration_error, &result.drives, &result.parameters}) {
     if (!text->empty()) std::fprintf(stderr, "warning: %s\n", text->c_str());
   }
   for (const std::string& text : sim::step_trouble_texts(result.troubles))

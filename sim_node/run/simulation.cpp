@@ -47,6 +47,14 @@ std::vector<DeviceExchange> exchanges_of(const scene::Scene& scene, std::uint64_
 
 }  // namespace
 
+std::string parameter_trouble_text(const StepTroubles& troubles) {
+  if (troubles.refused_parameters == 0) return {};
+  return fmt::format(
+      "{} of formulas in 'liaisons' were no finite numbers, first at {:.6g} s: what asks for them "
+      "had no force",
+      config::count_text(troubles.refused_parameters, "value"), troubles.first_refused_parameter_s);
+}
+
 std::string drive_trouble_text(const StepTroubles& troubles) {
   std::string text;
   if (troubles.drive_jumps > 0) {
@@ -129,8 +137,12 @@ bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept 
     if (partners_.is_passed()) let_devices_go(PassedBound::kPartners);
     troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;
     troubles_.forgotten_pairs += report.forgotten_pairs;
-    troubles_.refused_inputs += report.refused_inputs + report.refused_drives;
+    troubles_.refused_inputs +=
+        report.refused_inputs + report.refused_drives + report.refused_parameters;
     troubles_.refused_drives += report.refused_drives;
+    if (report.refused_parameters > 0 && troubles_.refused_parameters == 0)
+      troubles_.first_refused_parameter_s = simulated_s() - world_.network().step();
+    troubles_.refused_parameters += report.refused_parameters;
     if (report.drive_jumps > 0 && troubles_.drive_jumps == 0)
       troubles_.first_jump_s = simulated_s();
     troubles_.drive_jumps += report.drive_jumps;

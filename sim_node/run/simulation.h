@@ -21,14 +21,20 @@ namespace cordis::sim {
 struct StepTroubles {
   std::uint64_t overflowed_steps = 0;  ///< steps with StepReport::overflowed_sets
   std::uint64_t forgotten_pairs = 0;   ///< sum of StepReport::forgotten_pairs
-  std::uint64_t refused_inputs = 0;    ///< sum of StepReport::refused_inputs and refused_drives
-  std::uint64_t refused_drives = 0;    ///< sum of StepReport::refused_drives
-  std::uint64_t drive_jumps = 0;       ///< sum of StepReport::drive_jumps
-  double first_jump_s = 0.0;           ///< simulated time of the first
+  /// Sum of StepReport::refused_inputs, refused_drives and refused_parameters.
+  std::uint64_t refused_inputs = 0;
+  std::uint64_t refused_drives = 0;        ///< sum of StepReport::refused_drives
+  std::uint64_t refused_parameters = 0;    ///< sum of StepReport::refused_parameters
+  double first_refused_parameter_s = 0.0;  ///< simulated time of the first
+  std::uint64_t drive_jumps = 0;           ///< sum of StepReport::drive_jumps
+  double first_jump_s = 0.0;               ///< simulated time of the first
 };
 
 /// What the drives of a scene have done wrong, for a person; empty when nothing.
 std::string drive_trouble_text(const StepTroubles& troubles);
+
+/// What the formulas of liaisons have done wrong, for a person; empty when nothing.
+std::string parameter_trouble_text(const StepTroubles& troubles);
 
 /// What else went wrong in the steps, each with its number, for a person; none when nothing.
 std::vector<std::string> step_trouble_texts(const StepTroubles& troubles);

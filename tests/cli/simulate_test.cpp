@@ -319,13 +319,52 @@ matter:
   EXPECT_EQ(after["refused_inputs"], 400);
   EXPECT_EQ(after["overflowed_steps"], 0);
   EXPECT_EQ(after["forgotten_pairs"], 0);
-  EXPECT_THAT(error_, HasSubstr("warning: positions and forces refused, not finite: 400\n"));
+  EXPECT_THAT(error_,
+              HasSubstr("warning: positions, forces and parameters refused, not finite: 400\n"));
   EXPECT_THAT(error_, testing::Not(HasSubstr("more pairs in range than room")));
 
   const std::string falling = put("fall.yaml", kFalling);
   ASSERT_EQ(run({falling, "--duration", "0.2s", "--summary", path("f.json")}), kSuccess) << error_;
   EXPECT_EQ(error_, "");
   EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["refused_inputs"], 0);
+}
+
+/// A mass that a spring with this rest length holds.
+std::string held_by(const std::string& rest_m) {
+  return R"(cordis: 1
+name: held
+space: 1
+step: {rate_hz: 4000}
+world: {gravity_m_per_s2: -9.81}
+liaisons:
+  k: {kind: spring_damper, stiffness_n_per_m: 1000, viscosity_n_s_per_m: 20, rest_m: ")" +
+         rest_m + R"("}
+matter:
+  roof: {kind: fixed, at_m: 0}
+  bob:  {kind: mass, mass_kg: 1, at_m: -0.5}
+links: [{liaison: k, between: [roof, bob]}]
+signals: {height: {of: bob, quantity: position}}
+)";
+}
+
+TEST_F(Simulate, SaysThatAFormulaOfALiaisonIsNoFiniteNumber) {
+  const std::string scene = put("held.yaml", held_by("-0.5 + 0.1 * sqrt(0.1001 - time_s)"));
+  ASSERT_EQ(run({scene, "--duration", "0.2s", "--summary", path("s.json")}), kSuccess) << error_;
+  EXPECT_THAT(error_,
+              HasSubstr("warning: 399 values of formulas in 'liaisons' were no finite numbers, "
+                        "first at 0.10025 s: what asks for them had no force\n"));
+  const auto after = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_EQ(after["refused_inputs"], 399);
+  EXPECT_THAT(after["parameters"].get<std::string>(), HasSubstr("399 values"));
+}
+
+TEST_F(Simulate, HoldsByASpringWhosePhaseGrowsForLong) {
+  const std::string scene = put("held.yaml", held_by("-0.5 + 0.001 * sin(1.0e+9 * time_s)"));
+  ASSERT_EQ(run({scene, "--duration", "2s", "--summary", path("s.json")}), kSuccess) << error_;
+  EXPECT_EQ(error_, "");
+  const auto after = nlohmann::json::parse(text_of("s.json"));
+  EXPECT_GT(after["columns"]["height"]["least"], -0.53);
+  EXPECT_EQ(after["parameters"], "");
 }
 
 TEST_F(Simulate, SaysThatTheStepsHaveMadeEnergy) {

@@ -138,7 +138,7 @@ integration error -0.00025 J
 a mass of a set touched 7 others at once, certified up to 12
 steps with more pairs in range than room, slow: 3
 states of pairs FORGOTTEN for lack of memory: 17
-positions and forces refused, not finite: 5
+positions, forces and parameters refused, not finite: 5
 state hash 0123456789abcdef after 10000 steps
 the hand gave keyboard 0.002 J, damped in 7 ticks
 keyboard: 1.20 % of 20000 samples without an answer of their own

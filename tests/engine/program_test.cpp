@@ -254,6 +254,31 @@ TEST_P(Programs, GiveTruthAsOneOrZero) {
   EXPECT_EQ(value(one(Operation::kNot, 5.0)), 0.0);
 }
 
+TEST(ProgramParts, ThatMayFailAreThoseOfVariables) {
+  Term time(0.0);
+  time.program.code = {{Operation::kVariable, Quantity::kDistance, 0.0, 0}};
+  const Term root = one(Operation::kSqrt, time - Term(1.0));
+  const Term distance = q(Quantity::kDistance);
+  const auto sizes = [](const Term& term) {
+    std::vector<std::size_t> found;
+    for (const Program& part : parts_that_may_fail(term.program)) {
+      EXPECT_TRUE(engine::is_well_formed(part, 1));
+      found.push_back(part.code.size());
+    }
+    return found;
+  };
+  using Sizes = std::vector<std::size_t>;
+  EXPECT_EQ(sizes(root), Sizes{4});
+  EXPECT_EQ(sizes(Term(2.0) * (distance - root)), Sizes{4});
+  EXPECT_EQ(sizes(root * distance + two(Operation::kDivide, Term(1.0), time)), (Sizes{4, 3}));
+  EXPECT_EQ(sizes(one(Operation::kSin, time) * distance), Sizes{}) << "is finite";
+  EXPECT_EQ(sizes(one(Operation::kSqrt, Term(2.0)) * distance), Sizes{}) << "does not change";
+  EXPECT_EQ(sizes(one(Operation::kSqrt, distance) * time), Sizes{});
+  EXPECT_EQ(sizes(three(Operation::kSelect, distance, root, time)), Sizes{})
+      << "may be of the other branch";
+  EXPECT_EQ(sizes(three(Operation::kSelect, time, root, time)), Sizes{7});
+}
+
 TEST_P(Programs, NeverHoldForWhatIsNotANumber) {
   const Term nan = one(Operation::kSqrt, -1.0);
   EXPECT_FALSE(holds(nan < 1.0));

@@ -15,12 +15,13 @@ struct StepReport {
   std::uint32_t refused_inputs = 0;   ///< positions and forces from outside that were not finite,
                                       ///< since the last step
   std::uint32_t refused_drives = 0;   ///< values of drives that were not finite: their MATs stayed
-  std::uint32_t drive_jumps = 0;      ///< positions of drives that jumped, see jumps()
-  std::uint32_t overflowed_sets = 0;  ///< sets with more pairs in range than there was room for:
-                                      ///< correct, but slow
-  std::uint32_t forgotten_pairs = 0;  ///< pairs of sets whose states found no room
-  bool wants_room = false;            ///< World::make_room() is due, before pairs are forgotten
-  std::uint32_t lost_events = 0;      ///< changes of state that found no room in events()
+  std::uint32_t refused_parameters = 0;  ///< formulas of variables in laws that were not finite
+  std::uint32_t drive_jumps = 0;         ///< positions of drives that jumped, see jumps()
+  std::uint32_t overflowed_sets = 0;     ///< sets with more pairs in range than there was room for:
+                                         ///< correct, but slow
+  std::uint32_t forgotten_pairs = 0;     ///< pairs of sets whose states found no room
+  bool wants_room = false;               ///< World::make_room() is due, before pairs are forgotten
+  std::uint32_t lost_events = 0;         ///< changes of state that found no room in events()
 };
 
 /// The largest numbers of partners that a mass of a set liaison has at once: of its first set, and

@@ -48,6 +48,27 @@ double truth(bool value) noexcept {
   return value ? 1.0 : 0.0;
 }
 
+/// True if an operation may make what is not finite of finite values that are not large.
+bool may_fail(const Instruction& instruction) noexcept {
+  switch (instruction.operation) {
+    case Operation::kDivide:
+    case Operation::kSqrt:
+    case Operation::kLog:
+    case Operation::kExp:
+    case Operation::kPower:
+    case Operation::kWholePower:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// True if an operation has no finite value as soon as one of its operands has none.
+bool hands_on(Operation operation) noexcept {
+  return operation == Operation::kAdd || operation == Operation::kSubtract ||
+         operation == Operation::kMultiply || operation == Operation::kNegate;
+}
+
 }  // namespace
 
 std::size_t operand_count(Operation operation) noexcept {
@@ -102,6 +123,41 @@ bool asks_for(const Program& program, Quantity quantity) noexcept {
 bool asks_for_variable(const Program& program) noexcept {
   return std::ranges::any_of(
       program.code, [](const Instruction& each) { return each.operation == Operation::kVariable; });
+}
+
+std::vector<Program> parts_that_may_fail(const Program& program) {
+  using Place = std::vector<Instruction>::const_iterator;
+  struct Part {
+    Place first;
+    bool is_of_link = false;
+    std::vector<Program> parts;  // of one that asks for the link
+  };
+  const auto parts_of = [](Part&& part, Place end) {
+    if (part.is_of_link) return std::move(part.parts);
+    const Program whole{std::vector<Instruction>(part.first, end)};
+    const bool counts = std::any_of(part.first, end, may_fail) && asks_for_variable(whole);
+    return counts ? std::vector<Program>(1, whole) : std::vector<Program>();
+  };
+  std::vector<Part> stack;
+  for (Place here = program.code.begin(); here != program.code.end(); ++here) {
+    const std::size_t taken = operand_count(here->operation);
+    CORDIS_ASSERT(taken <= stack.size());
+    Part whole{here, here->operation == Operation::kQuantity, {}};
+    const std::size_t lowest = stack.size() - taken;
+    if (taken > 0) whole.first = stack[lowest].first;
+    for (std::size_t i = lowest; i < stack.size(); ++i)
+      whole.is_of_link = whole.is_of_link || stack[i].is_of_link;
+    for (std::size_t i = lowest; i < stack.size() && whole.is_of_link && hands_on(here->operation);
+         ++i) {
+      const Place end = i + 1 < stack.size() ? stack[i + 1].first : here;
+      for (Program& part : parts_of(std::move(stack[i]), end))
+        whole.parts.push_back(std::move(part));
+    }
+    stack.resize(lowest);
+    stack.push_back(std::move(whole));
+  }
+  CORDIS_ASSERT(stack.size() == 1);
+  return parts_of(std::move(stack.front()), program.code.end());
 }
 
 bool has_edge(const Program& program) noexcept {

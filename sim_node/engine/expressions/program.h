@@ -42,6 +42,10 @@ bool asks_for_variable(const Program& program) noexcept;
 /// True when `rising` or `falling` stand in it.
 bool has_edge(const Program& program) noexcept;
 
+/// The parts of a program of a link that ask for variables and nothing of the link, where one that is no finite number
+/// leaves the whole without one. What is finite for all finite variables, but for overflow, is left out. Precondition: well-formed.
+std::vector<Program> parts_that_may_fail(const Program& program);
+
 /// What a program may ask of a link, by Quantity.
 using LinkQuantities = std::array<double, kQuantityCount>;
 

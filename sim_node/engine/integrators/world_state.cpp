@@ -102,6 +102,7 @@ StateTable WorldState::make_table(std::vector<StateMachine> from) const {
 StepReport WorldState::step() noexcept {
   StepReport report;
   report.refused_inputs = port_inputs.take_refused();
+  if (laws_ask_for_variables) report.refused_parameters = table.failed_parameters();
   log.begin_step();
   find_driven_forces();
   sets.forget_partners();

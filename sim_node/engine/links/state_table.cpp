@@ -161,6 +161,7 @@ struct StateTable::Content {
   std::vector<bool> asks_for_variable;  // by state, and of the padding
   std::vector<Following> following;
   std::vector<std::uint32_t> following_of;  // by state, and of the padding: its place, or kNone
+  std::vector<Program> watched;             // parts of formulas of variables
 
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
@@ -181,6 +182,7 @@ struct StateTable::Content {
   void add_state_machine(const StateMachine& state_machine);
   void add_state(const LinkState& state, const std::vector<TransitionTerm>& exits_of_state_machine);
   void record_needs(const Program& program);
+  void watch(const Program& formula);
 };
 
 void StateTable::Content::build() {
@@ -193,6 +195,7 @@ void StateTable::Content::build() {
   depths.clear();
   following.clear();
   following_of.clear();
+  watched.clear();
   needs.fill(false);
   slot_count = 0;
   for (const StateMachine& state_machine : state_machines) add_state_machine(state_machine);
@@ -283,8 +286,12 @@ void StateTable::Content::add_state_machine(const StateMachine& state_machine) {
   first_state.push_back(first);
   for (const LinkState& state : state_machine.states) {
     for (const Law* law : {&state.elasticity, &state.dissipation}) {
-      if (const auto* expression = std::get_if<Expression>(law)) record_needs(expression->program);
+      const auto* expression = std::get_if<Expression>(law);
+      if (expression == nullptr) continue;
+      record_needs(expression->program);
+      watch(expression->program);
     }
+    for (const ParameterFormula& each : state.formulas) watch(each.formula);
     state_machine_of.push_back(static_cast<std::uint32_t>(first_state.size() - 1));
     add_state(state, exits.back());
   }
@@ -324,6 +331,10 @@ void StateTable::Content::add_state(const LinkState& state,
   asks_for_variable.push_back(engine::asks_for_variable(state.elasticity) ||
                               formula_of(state, Parameter::kRestAngle) != nullptr ||
                               formula_of(state, Parameter::kDepth) != nullptr);
+}
+
+void StateTable::Content::watch(const Program& formula) {
+  for (Program& part : parts_that_may_fail(formula)) watched.push_back(std::move(part));
 }
 
 void StateTable::Content::record_needs(const Program& program) {
@@ -372,6 +383,15 @@ void StateTable::keep_variables() noexcept {
 
 void StateTable::find_parameters() noexcept {
   for (Content::Following& each : content_->following) content_->find(each);
+}
+
+std::uint32_t StateTable::failed_parameters() const noexcept {
+  const double* const values = content_->variables.data();
+  std::uint32_t failed = 0;
+  for (const Program& part : content_->watched) {
+    if (!std::isfinite(value_of({part.code.data(), part.code.size(), values}))) ++failed;
+  }
+  return failed;
 }
 
 double StateTable::stiffness(StateIndex state) const noexcept {

@@ -40,6 +40,9 @@ class StateTable {
   /// Finds the parameters that follow variables, once these have changed. Real time: O(such parameters), no
   /// allocation.
   void find_parameters() noexcept;
+  /// How many parts of formulas of variables are no finite numbers. Real time: O(instructions of those that may be
+  /// so), no allocation.
+  std::uint32_t failed_parameters() const noexcept;
   /// True if the elasticity of a state, or its rest angle, follows a variable.
   bool asks_for_variable(StateIndex state) const noexcept;
   /// Present parameters of a state: the numbers that stand in it, and the factors that follow variables.
