@@ -76,10 +76,13 @@ void SceneLoop::wait_for_recorder(const std::string& node) {
 }
 
 bool SceneLoop::finished() const noexcept {
-  // Half a step of tolerance: the sum of steps is not exactly the duration.
-  const double reached = runner_.played_s() + 0.5 * simulation().world().network().step();
+  // Whole gesture periods count. The last step of one stands at its end, or less than a step before it.
+  constexpr double kRounding = 1e-7;  // of a period
+  const double until_end = simulation().division().is_even()
+                               ? kRounding / simulation().scene().gesture_rate_hz
+                               : (1.0 - kRounding) * simulation().world().network().step();
   return node::stop_requested() || simulation().failed() ||
-         (duration_s_ > 0.0 && reached >= duration_s_);
+         (duration_s_ > 0.0 && runner_.played_s() + until_end >= duration_s_);
 }
 
 bool SceneLoop::execute() {

@@ -243,7 +243,17 @@ double OfflineSession::answer_on_axis(const scene::Port& port, std::size_t axis)
 }
 
 bool OfflineSession::has_reached(double time_s) const noexcept {
-  return this->time_s() - start_s() >= time_s - 0.5 * world().network().step();
+  return periods_are_over(
+      time_s, loaded_->simulation.tick_count() - loaded_->simulation.start_tick_count());
+}
+
+bool OfflineSession::has_come_to(double time_s) const noexcept {
+  return periods_are_over(time_s, loaded_->simulation.tick_count());
+}
+
+bool OfflineSession::periods_are_over(double time_s, std::uint64_t count) const noexcept {
+  constexpr double kRounding = 1e-7;  // of a period: times are sums and products
+  return static_cast<double>(count) >= time_s * scene().gesture_rate_hz - kRounding;
 }
 
 void OfflineSession::play_until(double time_s, const std::function<void()>& after_tick) {

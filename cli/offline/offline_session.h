@@ -38,9 +38,10 @@ class OfflineSession {
   /// sim::Simulation::failure().
   bool play_tick(const std::function<void()>& after_step = {});
 
-  /// True if so much time is simulated since the start, to half a step: as a sim_node counts its
-  /// `duration_s`.
+  /// True if so much time is simulated since the start, in whole gesture periods.
   bool has_reached(double time_s) const noexcept;
+  /// Likewise since 0 s.
+  bool has_come_to(double time_s) const noexcept;
 
   /// `duration_s` of the sim_node; 0 when the file says none [s].
   double duration_s() const noexcept { return duration_s_; }
@@ -102,6 +103,8 @@ class OfflineSession {
  private:
   class SimulatedDevice;
   const SimulatedDevice* device_of(const scene::Port& port) const noexcept;
+  /// True if a time is not above so many gesture periods.
+  bool periods_are_over(double time_s, std::uint64_t count) const noexcept;
   void load_launch(const std::string& file, const std::vector<std::string>& overrides);
   void load_scene(const std::string& file);
   void warn(const config::Problems& problems);

@@ -7,7 +7,7 @@ OfflineSource::OfflineSource(const std::string& file, const std::vector<std::str
     : session_(file, overrides), description_(session_.description()) {}
 
 std::optional<msg::SceneFrame> OfflineSource::frame_at(double time_s) {
-  while (failure_.empty() && !session_.has_reached(time_s - session_.start_s())) {
+  while (failure_.empty() && !session_.has_come_to(time_s)) {
     if (!session_.play_tick()) failure_ = session_.simulation().failure();
   }
   if (!failure_.empty()) return std::nullopt;
@@ -16,7 +16,7 @@ std::optional<msg::SceneFrame> OfflineSource::frame_at(double time_s) {
 
 void OfflineSource::read_signals(double from_s, double to_s, SignalSeries& rows,
                                  const std::function<bool(double)>& progress) {
-  while (!session_.has_reached(to_s - session_.start_s()) && !progress(session_.time_s())) {
+  while (!session_.has_come_to(to_s) && !progress(session_.time_s())) {
     if (!session_.play_tick()) {
       failure_ = session_.simulation().failure();
       return;

@@ -84,8 +84,9 @@ void add_simulate_verb(CommandLine& line) {
                      "A scene, whose ports rest, or a launch file, whose simulated devices play");
   verb.more_words("words", options.overrides,
                   "Change a launch file, as for `cordis run`: name.key=value");
-  verb.option("--duration", "TIME", words->duration,
-              "Simulated time [duration_s of the sim_node]: 500ms, 10s, 2min");
+  verb.option(
+      "--duration", "TIME", words->duration,
+      "Simulated time [duration_s of the sim_node]: 500ms, 10s, 2min; whole gesture periods");
   add_table_files(verb, options,
                   "Rows of the table: step, tick (a gesture period), 10 (steps), 0.01s [tick]");
   verb.option("--summary", "FILE", options.summary_file,

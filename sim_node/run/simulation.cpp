@@ -93,7 +93,7 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
   world_.restore(*scene_->start_state);
   world_.end_external_forces();  // the hands of that run are gone
   start_s_ = simulated_s();
-  tick_count_ = ticks.value_or(0);
+  start_tick_count_ = tick_count_ = ticks.value_or(0);
 }
 
 bool Simulation::misses_start_state() const noexcept {
@@ -113,6 +113,7 @@ bool Simulation::go_on_from(const Simulation& before, std::vector<double>& room)
   division_ = before.division_;
   steps_in_tick_ = before.steps_in_tick_;
   tick_count_ = before.tick_count_;
+  start_tick_count_ = before.start_tick_count_;
   start_s_ = before.start_s_;
   return true;
 }

@@ -87,6 +87,8 @@ class Simulation {
   const TickDivision& division() const noexcept { return division_; }
   bool is_between_ticks() const noexcept { return steps_in_tick_ == 0; }
   std::uint64_t tick_count() const noexcept { return tick_count_; }
+  /// Ticks that were over in the state it began from.
+  std::uint64_t start_tick_count() const noexcept { return start_tick_count_; }
   double simulated_s() const noexcept;
   /// 0, or the time of the state it began from.
   double start_s() const noexcept { return start_s_; }
@@ -129,6 +131,7 @@ class Simulation {
   TickDivision division_;
   int steps_in_tick_ = 0;  // done in the present tick
   std::uint64_t tick_count_ = 0;
+  std::uint64_t start_tick_count_ = 0;
   double start_s_ = 0.0;
   bool failed_ = false;
   PassedBound passed_bound_ = PassedBound::kNone;

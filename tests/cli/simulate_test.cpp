@@ -329,6 +329,40 @@ matter:
   EXPECT_EQ(nlohmann::json::parse(text_of("f.json"))["refused_inputs"], 0);
 }
 
+TEST_F(Simulate, CountsWholeGesturePeriods) {
+  const std::string odd = put("odd.yaml", R"(cordis: 1
+name: odd
+space: 1
+step: {rate_hz: 44100}
+matter:
+  stone: {kind: mass, mass_kg: 2, at_m: 0, velocity_m_per_s: 1}
+signals: {place: {of: stone, quantity: position}}
+)");
+  const auto after = [&](const std::string& duration, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{odd, "--duration", duration, "--summary", path("s.json")};
+    words.insert(words.end(), more.begin(), more.end());
+    EXPECT_EQ(run(words), kSuccess) << error_;
+    return nlohmann::json::parse(text_of("s.json"));
+  };
+  // k periods have 44.1 k steps, rounded down
+  EXPECT_EQ(after("437ms", {"--csv", path("t.csv")})["steps"], 19'271);
+  EXPECT_EQ(after("437ms", {"--csv", path("t.csv")})["rows"], 437);
+  EXPECT_EQ(after("999ms")["steps"], 44'055);
+  EXPECT_EQ(after("1s")["steps"], 44'100);
+  EXPECT_EQ(after("0.0001ms")["steps"], 44) << "one period at least";
+  EXPECT_EQ(after("1.5ms")["steps"], 88);
+
+  after("437ms", {"--save-state", path("odd.state")});
+  std::string text = text_of("odd.yaml");
+  text.replace(text.find("matter:"), 0, "start_state: odd.state\n");
+  const std::string on = put("on.yaml", text);
+  ASSERT_EQ(run({on, "--duration", "563ms", "--summary", path("s.json")}), kSuccess) << error_;
+  const auto two = nlohmann::json::parse(text_of("s.json"));
+  const auto whole = after("1s");
+  EXPECT_EQ(two["steps"], whole["steps"]);
+  EXPECT_EQ(two["state_hash"], whole["state_hash"]);
+}
+
 /// A mass that a spring with this rest length holds.
 std::string held_by(const std::string& rest_m) {
   return R"(cordis: 1
