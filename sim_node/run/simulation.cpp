@@ -210,9 +210,12 @@ std::string Simulation::failure() const {
     most = speed;
     fastest = mat;
   }
-  if (most < 0.0) return what + ": its energy is not a finite number";
-  return fmt::format("{}: its energy is not a finite number; the fastest is '{}', which is {}",
-                     what, scene::call_mat(*scene_, fastest).name, why(fastest));
+  const char* const energy = std::isfinite(world_.energy().total())
+                                 ? "its energy is beyond 1e100 J"
+                                 : "its energy is not a finite number";
+  if (most < 0.0) return what + ": " + energy;
+  return fmt::format("{}: {}; the fastest is '{}', which is {}", what, energy,
+                     scene::call_mat(*scene_, fastest).name, why(fastest));
 }
 
 }  // namespace cordis::sim

@@ -448,6 +448,21 @@ links: [{liaison: d, between: [wall, m], rest_m: 1}]
 
 const std::string kOneLink = "  - {liaison: c, between: [a, m]}\n";
 
+TEST_F(Simulate, EndsWhereADrivenForceBringsTheMotionBeyondAllBounds) {
+  const std::string scene = put("driven_off.yaml", R"(cordis: 1
+name: driven_off
+space: 1
+step: {rate_hz: 1000}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: 1, driven: {force_n: "x_m^3"}}
+signals: {x: {of: a, quantity: position}}
+)");
+  EXPECT_EQ(run({scene, "--duration", "10s", "--summary", path("n.json")}), kFailure);
+  EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
+  EXPECT_THAT(error_, HasSubstr("; the fastest is 'a'"));
+  EXPECT_EQ(nlohmann::json::parse(text_of("n.json"))["complete"], false);
+}
+
 TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
   const std::vector<std::string> scenes{
       test::moved_mass("rate_hz: 1000", "at_m: 0.1",

@@ -100,6 +100,11 @@ INSTANTIATE_TEST_SUITE_P(
   a: {kind: string, count: 2, mass_kg: 1, from_m: ^[0, 2e6], to_m: [1, 0], stiffness_n_per_m: 1}
 )",
                  "'from_m' in matter 'a' is farther than 1e6 m away", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^[1e200, 0]}
+)",
+                 "'velocity_m_per_s' in matter 'a' is faster than 1e6 m/s", ""},
         BadScene{
             kHead2,
             R"(matter:

@@ -11,7 +11,7 @@ namespace cordis::engine {
 /// What one step has to report. Everything is 0 when nothing is wrong.
 struct StepReport {
   std::uint32_t non_finite_mats = 0;  ///< MATs whose new position is not finite
-  bool has_energy = true;             ///< false: a work of this or an earlier step is not finite
+  bool has_energy = true;             ///< false: the works so far are not finite, or above 1e100 J
   std::uint32_t refused_inputs = 0;   ///< positions and forces from outside that were not finite,
                                       ///< since the last step
   std::uint32_t refused_drives = 0;   ///< values of drives that were not finite: their MATs stayed

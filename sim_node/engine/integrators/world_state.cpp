@@ -113,7 +113,7 @@ StepReport WorldState::step() noexcept {
   report.refused_drives = port_inputs.take_refused_drives();
   report.drive_jumps = port_inputs.take_drive_jumps();
   report.non_finite_mats = moved.non_finite_mats;
-  report.has_energy = account.is_finite();
+  report.has_energy = account.is_bounded();
   report.overflowed_sets = sets.overflowed_count();
   report.forgotten_pairs = sets.forgotten_count();
   report.wants_room = sets.want_room(mats.force_columns().position);

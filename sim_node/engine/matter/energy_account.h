@@ -57,9 +57,11 @@ class EnergyAccount {
   void add(const StepEnergy& step) noexcept;
 
   double dissipated() const noexcept { return dissipated_; }  ///< as entered [J]
-  /// False once an energy at the start or a work of a step was no finite number. O(1).
-  bool is_finite() const noexcept {
-    return std::isfinite(initial_ + stored_ + dissipated_ + port_work_ + switching_);
+  /// The largest energy of a world that has not diverged [J].
+  static constexpr double kLargest = 1e100;
+  /// False once their sum is above kLargest, or an energy at the start or a work of a step was no finite number. O(1).
+  bool is_bounded() const noexcept {
+    return std::abs(initial_ + stored_ + dissipated_ + port_work_ + switching_) <= kLargest;
   }
 
   /// @param since   works of the forces of the last step up to the present positions

@@ -84,6 +84,12 @@ bool is_list_of_directions(const Value& value, int space) {
                      [](const Value& item) { return axis_of_word(item.text()).has_value(); });
 }
 
+/// What is said of a number beyond kFarthest.
+const char* beyond_farthest(const std::string& key) {
+  if (key.ends_with("_m_per_s")) return " is faster than 1e6 m/s";
+  return key.ends_with("_m") ? " is farther than 1e6 m away" : " is beyond 1e6";
+}
+
 }  // namespace
 
 Vec3 required_point(config::MappingReader& reader, const std::string& key, int space) {
@@ -92,7 +98,7 @@ Vec3 required_point(config::MappingReader& reader, const std::string& key, int s
   for (int i = 0; i < space; ++i) {
     point[i] = numbers[static_cast<std::size_t>(i)];
     if (std::abs(point[i]) > kFarthest)
-      reader.error_at(key, "'" + key + "' in " + reader.what() + " is farther than 1e6 m away");
+      reader.error_at(key, "'" + key + "' in " + reader.what() + beyond_farthest(key));
   }
   return point;
 }
