@@ -140,12 +140,13 @@ std::string stability_text(const SceneCheck& check) {
               ? fmt::format(", surely unstable beyond {}\n", seconds(stability.diverging_step))
               : "\n";
   if (!stability.bounded && !stability.uncertainty) {
-    text += stability.laws_are_bounded
-                ? "            a ball with enough energy passes a thin wall or a corner: "
-                  "certified\n            for the energy and speeds of the start, "
-                : "            a law has no largest slope: certified for the energy and "
-                  "speeds of the start, \n            ";
-    text += "and for a hand of 1 m/s; beyond them energy is watched during the run\n";
+    text += stability.laws_are_bounded ? "            a ball with enough energy passes a thin wall "
+                                         "or a corner: certified for the "
+                                         "\n            energy and speeds of the start, "
+                                       : "            a law has no largest slope: certified for "
+                                         "the energy and speeds of the start, "
+                                         "\n            ";
+    text += "and for a hand of 1 m/s;\n            beyond them energy is watched during the run\n";
   }
   text += turning_text(check);
   if (!stability.uncertainty) {

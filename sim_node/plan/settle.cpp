@@ -281,13 +281,14 @@ class Pace {
   /// @param steps  from one hold to the next
   /// @return true if the next steps have another length
   bool changes_after(std::uint64_t steps) {
-    constexpr std::uint64_t kHolds = 100;
+    constexpr std::uint64_t kHolds = 100;   // once another length has been tried
     constexpr std::uint64_t kFewSteps = 6;  // between two of them
     constexpr double kShortest = 0.25;      // of the longest, which follows it
     ++holds_;
     steps_ += steps;
-    if (holds_ < kHolds) return false;
+    if (holds_ < patience_) return false;
     const bool changes = steps_ < kFewSteps * holds_;
+    if (changes) patience_ = kHolds;
     holds_ = 0;
     steps_ = 0;
     if (changes) step_ = step_ > kShortest * longest_ ? 0.5 * step_ : longest_;
@@ -298,6 +299,7 @@ class Pace {
  private:
   double longest_;
   double step_;
+  std::uint64_t patience_ = 2500;  // holds; most scenes rest after fewer
   std::uint64_t holds_ = 0;
   std::uint64_t steps_ = 0;
 };

@@ -210,11 +210,9 @@ std::string Simulation::failure() const {
     most = speed;
     fastest = mat;
   }
-  const char* const energy = std::isfinite(world_.energy().total())
-                                 ? "its energy is beyond 1e100 J"
-                                 : "its energy is not a finite number";
-  if (most < 0.0) return what + ": " + energy;
-  return fmt::format("{}: {}; the fastest is '{}', which is {}", what, energy,
+  const std::string energy = what + ": its energy is no finite number below 1e100 J";
+  if (most < 0.0) return energy;
+  return fmt::format("{}; the fastest is '{}', which is {}", energy,
                      scene::call_mat(*scene_, fastest).name, why(fastest));
 }
 
