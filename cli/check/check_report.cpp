@@ -207,13 +207,27 @@ std::string choice_text(const SceneCheck& check) {
 /// From here on bouncing without viscosity gained tenfold in 20,000 steps: K' = 0.2, docs/stability.md.
 constexpr double kGainThatAddsUp = 0.05;
 
+/// True if the force of a liaison may jump: as it changes its state, or by its law.
+bool may_jump(const engine::NetworkDescription& network, plan::LiaisonId liaison) {
+  const std::uint32_t machine = liaison.kind == plan::LiaisonKind::kSet
+                                    ? network.sets[liaison.index].state_machine
+                                    : network.state_links[liaison.index].state_machine;
+  const std::vector<engine::LinkState>& states = network.state_machines[machine].states;
+  const engine::Law& law = states.front().elasticity;
+  const auto* power = std::get_if<engine::Power>(&law);
+  const bool begins_at_0 = engine::is_none(law) || (power != nullptr && power->exponent >= 1.0);
+  return states.size() > 1 || !begins_at_0;
+}
+
 std::string contact_text(const SceneCheck& check) {
   const auto& contact = check.plan.worst_contact;
   if (!contact) return {};
   const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
-  std::string text =
-      fmt::format("contacts    one collision gains {:.2g} % of its energy at worst: {}{}\n",
-                  100.0 * contact->worst, liaison.name, location(liaison));
+  std::string text = fmt::format(
+      "contacts    one collision gains {:.2g} % of its energy at worst{}: {}{}\n",
+      100.0 * contact->worst,
+      may_jump(check.scene.network, contact->liaison) ? ", more where its force jumps" : "",
+      liaison.name, location(liaison));
   if (contact->worst >= kGainThatAddsUp)
     text +=
         "            without viscosity what collisions gain adds up, in the end without a limit\n";

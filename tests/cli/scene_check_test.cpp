@@ -400,7 +400,7 @@ links:
 }
 
 TEST_F(Checked, WhatCollisionsGainAddsUpWhereItIsMuch) {
-  const auto bounces = [&](const std::string& rate) {
+  const auto bounces = [&](const std::string& rate, const std::string& law = "") {
     std::ofstream(path_) << test::filled(R"(cordis: 1
 name: bounce
 space: 1
@@ -410,17 +410,25 @@ matter:
   floor: {kind: fixed, at_m: 0}
   ball: {kind: mass, mass_kg: 0.001, at_m: 0.03}
 liaisons:
-  contact: {kind: state_machine, stiffness_n_per_m: 700, pulls: false}
+  contact: {kind: state_machine, stiffness_n_per_m: 700, pulls: false<law>}
 links:
   - {liaison: contact, between: [floor, ball], rest_m: 0.01}
 )",
-                                         {{"rate", rate}});
+                                         {{"rate", rate}, {"law", law}});
     EXPECT_EQ(run({}), kSuccess) << error_;
     EXPECT_NE(out_.find("one collision gains"), std::string::npos) << out_;
     return out_.find("what collisions gain adds up") != std::string::npos;
   };
+  const auto may_jump = [&] {
+    return out_.find("at worst, more where its force jumps: ") != std::string::npos;
+  };
   EXPECT_TRUE(bounces("1000"));   // K' = 0.7
   EXPECT_FALSE(bounces("3000"));  // 0.078
+  EXPECT_FALSE(may_jump());
+  bounces("3000", ", elasticity: {kind: power, coefficient: 10, exponent: 1.5}");
+  EXPECT_FALSE(may_jump());
+  bounces("3000", ", elasticity: {kind: table, at_m: [0], force_n: [-0.1]}");
+  EXPECT_TRUE(may_jump());
 }
 
 TEST_F(Checked, PortsAreJudgedInTheirRole) {
