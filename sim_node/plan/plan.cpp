@@ -471,7 +471,7 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   if (!network.maxwell_links.empty() && edge.viscosity > 0.0) {
     LiaisonGraph maxwell = at_edge;
     std::erase_if(maxwell.edges,
-                  [](const Edge& of) { return of.liaison.kind != LiaisonKind::kMaxwellLink; });
+                  [](const Edge& link) { return link.liaison.kind != LiaisonKind::kMaxwellLink; });
     maxwell.contacts.clear();
     maxwell.forces.clear();
     std::ranges::fill(maxwell.medium_viscosity, 0.0);

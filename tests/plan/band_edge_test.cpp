@@ -69,8 +69,8 @@ struct Held {
   }
 };
 
-/// The same of a run, of which each value is a sum of the values before it, by least squares: of two, and of a third one
-/// beside a Maxwell element, which adds what creeps.
+/// The complex rate of a run. Each value is a sum of the two values before it, by least squares; of three beside a
+/// Maxwell element, which adds what creeps.
 Complex rate_of_run(const NetworkDescription& scene, double frequency_hz) {
   World world = make_world(scene);
   const int stride = std::max(1, static_cast<int>(0.25 / (frequency_hz * scene.step)));

@@ -113,7 +113,7 @@ step: {rate_hz: 1000, integrator: <integrator>}
 TEST(SignalOfAWhole, MomentaAgreeWithSumsOverPositions) {
   WholeRun run(sound_scene(2, kFlyingDisc));
   run.step(99);
-  const engine::Columns before = run.world().positions();
+  const Eigen::Matrix4Xd before = run.world().positions();  // no view
   run.step(1);
   const engine::Columns& after = run.world().positions();
 
