@@ -236,9 +236,9 @@ bool acts_at(const engine::LinkState& state, double tension) {
 
 }  // namespace
 
-double damping_ratio(double viscosity, double least_stiffness) noexcept {
+double damping_ratio(double viscosity, double min_stiffness) noexcept {
   if (!(viscosity > 0.0)) return 0.0;
-  return least_stiffness > 0.0 ? viscosity / least_stiffness
+  return min_stiffness > 0.0 ? viscosity / min_stiffness
                                : std::numeric_limits<double>::infinity();
 }
 

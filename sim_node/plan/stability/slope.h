@@ -38,7 +38,7 @@ inline constexpr const char* kPassesSurface =
     "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
 
 /// Slope::damping_ratio of this viscosity and at least this stiffness [s].
-double damping_ratio(double viscosity, double least_stiffness) noexcept;
+double damping_ratio(double viscosity, double min_stiffness) noexcept;
 
 /// True if a Slope::uncertainty is due to variables that the law asks for.
 bool is_of_variables(const char* uncertainty) noexcept;
