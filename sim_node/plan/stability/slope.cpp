@@ -238,8 +238,7 @@ bool acts_at(const engine::LinkState& state, double tension) {
 
 double damping_ratio(double viscosity, double min_stiffness) noexcept {
   if (!(viscosity > 0.0)) return 0.0;
-  return min_stiffness > 0.0 ? viscosity / min_stiffness
-                               : std::numeric_limits<double>::infinity();
+  return min_stiffness > 0.0 ? viscosity / min_stiffness : std::numeric_limits<double>::infinity();
 }
 
 bool is_of_variables(const char* uncertainty) noexcept {
