@@ -276,7 +276,8 @@ struct ElementaryFunctions {
   static Reduced reduced_by_whole_numbers(double x) noexcept {
     const auto exponent = static_cast<int>(bits_of(x) >> 52 & 2047U);
     const std::uint64_t m = (bits_of(x) & ((1ULL << 52) - 1)) | 1ULL << 52;
-    const auto place = static_cast<std::size_t>(exponent - 1075 + 62);
+    const int bit = exponent - 1075 + 62;
+    const auto place = static_cast<std::size_t>(bit);
     const std::uint64_t* const first = kPerQuarter + place / 64;
     const std::size_t shift = place % 64;
     Digits digits{};
