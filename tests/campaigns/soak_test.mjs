@@ -21,7 +21,7 @@ const STEP_RATE_HZ = 4000; // of the scene
 const SAMPLE_RATE_HZ = 1000; // of the devices
 process.env.CORDIS_SAMPLES_BEFORE = String(2 ** 32 - Math.round((SAMPLE_RATE_HZ * SOAK_S) / 2));
 // What a process may have taken in the meantime: pages that it touches for the first time, and per second the index of a take.
-const FIRST_KIB = SOAK_S < 240 ? 2048 : 512; // most of them in the first minute
+const FIRST_KIB = SOAK_S < 240 ? 3072 : 512; // most of them in the first minute
 const KIB_PER_S = (name) => (name === 'record' ? 5 : 0.1);
 const KIB_PER_GUEST = HAS_KEYS ? 80 : 1; // Fast DDS keeps this of each that had keys: docs/security.md
 const GUESTS = 3; // in a round, each a participant
