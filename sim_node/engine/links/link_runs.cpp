@@ -14,15 +14,15 @@ namespace {
 constexpr std::uint32_t kTile = 1024;
 
 /// The MATs that a link joins.
-struct Ends {
+struct LinkEnds {
   std::uint32_t low;
   std::uint32_t high;
 
   std::uint32_t distance() const noexcept { return high - low; }
 };
 
-std::vector<Ends> ends_of(std::span<const Link> links) {
-  std::vector<Ends> ends;
+std::vector<LinkEnds> ends_of(std::span<const Link> links) {
+  std::vector<LinkEnds> ends;
   ends.reserve(links.size());
   for (const Link& link : links)
     ends.push_back({std::min(link.mat_a, link.mat_b), std::max(link.mat_a, link.mat_b)});
@@ -30,11 +30,11 @@ std::vector<Ends> ends_of(std::span<const Link> links) {
 }
 
 /// How many links from `first` on ascend together.
-std::size_t run_length(std::span<const Ends> links, std::size_t first) noexcept {
+std::size_t run_length(std::span<const LinkEnds> links, std::size_t first) noexcept {
   std::size_t last = first;
   for (; last + 1 < links.size(); ++last) {
-    const Ends& now = links[last];
-    const Ends& next = links[last + 1];
+    const LinkEnds& now = links[last];
+    const LinkEnds& next = links[last + 1];
     if (next.distance() != now.distance() || next.low <= now.low) break;
     if (next.low - now.low > LinkArrangement::kLargestGap + 1) break;
   }
@@ -42,13 +42,13 @@ std::size_t run_length(std::span<const Ends> links, std::size_t first) noexcept 
 }
 
 /// True if the rows of a run cost less than gathering its links.
-bool is_worth_rows(std::span<const Ends> run) noexcept {
+bool is_worth_rows(std::span<const LinkEnds> run) noexcept {
   return run.size() >= LinkArrangement::kShortestRun &&
          2 * run.size() > run.back().low - run.front().low;
 }
 
 /// How many of the links of a run, whole batches of rows, add to the forces of no MAT from last_mat on.
-std::size_t fitting_length(std::span<const Ends> run, std::size_t last_mat) noexcept {
+std::size_t fitting_length(std::span<const LinkEnds> run, std::size_t last_mat) noexcept {
   const std::size_t rows = (last_mat - run[0].high) / kLinkBatch * kLinkBatch;
   std::size_t length = run.size();
   while (length > 0 && run[length - 1].low - run[0].low >= rows) --length;
@@ -57,7 +57,7 @@ std::size_t fitting_length(std::span<const Ends> run, std::size_t last_mat) noex
 
 /// Calls visit(first, length, is_run) for one stretch of links after the other.
 template <class Visit>
-void for_each_run(std::span<const Ends> links, const Visit& visit) {
+void for_each_run(std::span<const LinkEnds> links, const Visit& visit) {
   for (std::size_t l = 0; l < links.size();) {
     const std::size_t length = run_length(links, l);
     visit(l, length, is_worth_rows(links.subspan(l, length)));
@@ -65,7 +65,7 @@ void for_each_run(std::span<const Ends> links, const Visit& visit) {
   }
 }
 
-std::size_t count_in_runs(std::span<const Ends> links) {
+std::size_t count_in_runs(std::span<const LinkEnds> links) {
   std::size_t in_runs = 0;
   for_each_run(links, [&](std::size_t, std::size_t length, bool is_run) {
     if (is_run) in_runs += length;
@@ -75,7 +75,7 @@ std::size_t count_in_runs(std::span<const Ends> links) {
 
 /// Sorts the links of a tile by distance, then by the lower MAT. Behind the links of a distance come those
 /// that join two MATs again.
-void sort_tile(std::span<const Ends> ends, std::span<std::uint32_t> tile) {
+void sort_tile(std::span<const LinkEnds> ends, std::span<std::uint32_t> tile) {
   const auto key = [&](std::uint32_t link) {
     return std::uint64_t{ends[link].distance()} << 32U | ends[link].low;
   };
@@ -102,9 +102,9 @@ void sort_tile(std::span<const Ends> ends, std::span<std::uint32_t> tile) {
 }
 
 /// Sorts the links of each tile, one tile after the other.
-std::vector<std::uint32_t> sorted_links(std::span<const Ends> ends) {
+std::vector<std::uint32_t> sorted_links(std::span<const LinkEnds> ends) {
   std::vector<std::size_t> first(1, 0);
-  for (const Ends& link : ends) {
+  for (const LinkEnds& link : ends) {
     const std::size_t tile = link.low / kTile;
     if (first.size() < tile + 2) first.resize(tile + 2, 0);
     ++first[tile + 1];
@@ -120,8 +120,8 @@ std::vector<std::uint32_t> sorted_links(std::span<const Ends> ends) {
 }
 
 /// Takes the links in runs first, as sorted, then the others, as the network has them.
-LinkOrder runs_first(std::span<const Ends> ends, const std::vector<std::uint32_t>& sorted) {
-  std::vector<Ends> ends_in_order;
+LinkOrder runs_first(std::span<const LinkEnds> ends, const std::vector<std::uint32_t>& sorted) {
+  std::vector<LinkEnds> ends_in_order;
   ends_in_order.reserve(sorted.size());
   for (const std::uint32_t link : sorted) ends_in_order.push_back(ends[link]);
   LinkOrder order;
@@ -179,7 +179,7 @@ class Arranger {
 }  // namespace
 
 LinkOrder order_in_runs(std::span<const Link> links) {
-  const std::vector<Ends> ends = ends_of(links);
+  const std::vector<LinkEnds> ends = ends_of(links);
   LinkOrder written{std::vector<std::uint32_t>(links.size()), count_in_runs(ends)};
   std::iota(written.links.begin(), written.links.end(), 0U);
   const std::size_t nearly_all = links.size() - links.size() / 16;
@@ -197,7 +197,7 @@ Link ascending(Link link, int dimension) noexcept {
 
 void arrange_links(std::span<const Link> links, std::uint32_t first_link, bool with_runs,
                    std::size_t last_mat, LinkArrangement& rows) {
-  const std::vector<Ends> ends = ends_of(links);
+  const std::vector<LinkEnds> ends = ends_of(links);
   Arranger arranger(rows);
   for (std::size_t l = 0; l < links.size();) {
     const std::size_t length = with_runs ? run_length(ends, l) : 1;
