@@ -57,8 +57,6 @@ struct Held {
         value += link.stiffness * s / (s + link.stiffness / link.viscosity);
       return value;
     };
-    double stiffest = stiffness;
-    for (const engine::MaxwellLink& link : scene.maxwell_links) stiffest += link.stiffness;
     Complex s(0.0, std::sqrt(stiffness));
     for (int n = 0; n < 200; ++n) {
       const Complex slope = (sum(s * 1.000001) - sum(s)) / (s * 1e-6);
