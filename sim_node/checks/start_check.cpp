@@ -9,6 +9,7 @@
 #include "node/assert.h"
 #include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/liaison_id.h"
+#include "sim_node/plan/rate.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/table_pulse.h"
 #include "sim_node/scene/naming.h"
@@ -144,8 +145,7 @@ void check_pulses(const scene::Scene& scene, config::Problems& problems) {
   constexpr double kRounding = 1e-9;
   if (!pulse || pulse->width * scene.step_rate_hz >= 1.0 - kRounding) return;
   const scene::Called called = scene::call_mat(scene, scene.network.drives[pulse->drive].mat);
-  const double needed =
-      std::ceil((1.0 / pulse->width) / scene.gesture_rate_hz - kRounding) * scene.gesture_rate_hz;
+  const double needed = plan::multiple_from(1.0 / pulse->width, scene.gesture_rate_hz);
   problems.warning(called.place,
                    "'driven' of " + called.name + " has a pulse of " + short_text(pulse->width) +
                        " s at " + config::number_text(pulse->time) + " s, shorter than a step of " +

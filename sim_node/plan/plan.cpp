@@ -429,16 +429,24 @@ bool moves_as_cordis(const engine::NetworkDescription& network, const Edge& edge
   return false;
 }
 
-/// @param graph  at_frequency()
-MovedAsByCordis moved_as_by_cordis(const engine::NetworkDescription& network, LiaisonGraph graph,
-                                   double w) {
-  std::erase_if(graph.edges, [&](const Edge& edge) { return !moves_as_cordis(network, edge); });
+/// A graph with some of its edges and with its forces alone.
+template <class Keeps>
+LiaisonGraph with_edges(LiaisonGraph graph, const Keeps& keeps) {
+  std::erase_if(graph.edges, [&](const Edge& edge) { return !keeps(edge); });
+  graph.contacts.clear();
+  std::ranges::fill(graph.medium_viscosity, 0.0);
+  return graph;
+}
+
+/// Without contacts: they come and go, and their energy counts. @param at_edge  at_frequency()
+MovedAsByCordis moved_as_by_cordis(const engine::NetworkDescription& network,
+                                   const LiaisonGraph& at_edge, double w) {
+  LiaisonGraph graph =
+      with_edges(at_edge, [&](const Edge& edge) { return moves_as_cordis(network, edge); });
   const bool has_forces = network.integrator == engine::IntegratorKind::kModal ||
                           network.integrator == engine::IntegratorKind::kImplicit;
   if (!has_forces) graph.forces.clear();
   if (graph.edges.empty() && graph.forces.empty()) return {};
-  graph.contacts.clear();  // they come and go: their energy counts
-  std::ranges::fill(graph.medium_viscosity, 0.0);
   MovedAsByCordis part;
   part.viscosity = max_viscosity_of(graph, w);
   for (Edge& edge : graph.edges) edge.viscosity = 0.0;
@@ -469,12 +477,9 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   edge.min_viscosity = std::min(min_viscosity_of(at_edge, w), edge.viscosity);
   edge.as_by_cordis = moved_as_by_cordis(network, at_edge, w);
   if (!network.maxwell_links.empty() && edge.viscosity > 0.0) {
-    LiaisonGraph maxwell = at_edge;
-    std::erase_if(maxwell.edges,
-                  [](const Edge& link) { return link.liaison.kind != LiaisonKind::kMaxwellLink; });
-    maxwell.contacts.clear();
+    LiaisonGraph maxwell = with_edges(
+        at_edge, [](const Edge& link) { return link.liaison.kind == LiaisonKind::kMaxwellLink; });
     maxwell.forces.clear();
-    std::ranges::fill(maxwell.medium_viscosity, 0.0);
     edge.of_maxwell = std::min(max_viscosity_of(maxwell, w) / edge.viscosity, 1.0);
   }
   edge.error = error_of(edge, edge.viscosity, network.step, network.integrator);

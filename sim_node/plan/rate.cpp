@@ -66,6 +66,11 @@ double creep_tolerance(const BandEdge& edge, const AccuracyTarget& target) {
 
 }  // namespace
 
+double multiple_from(double rate_hz, double unit_hz) noexcept {
+  constexpr double kRounding = 1e-9;
+  return std::ceil(rate_hz / unit_hz - kRounding) * unit_hz;
+}
+
 FormulaRate rate_by_formula(const engine::NetworkDescription& network, const AccuracyTarget& target,
                             double gesture_rate_hz) {
   engine::NetworkDescription per_gesture = network;
@@ -108,9 +113,8 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
     consider_vibration(edge);
   }
 
-  constexpr double kRounding = 1e-9;
   formula.needed_hz = 1.0 / step;
-  formula.rate_hz = std::ceil(formula.needed_hz / gesture_rate_hz - kRounding) * gesture_rate_hz;
+  formula.rate_hz = multiple_from(formula.needed_hz, gesture_rate_hz);
   return formula;
 }
 

@@ -33,6 +33,9 @@ struct FormulaRate {
   RateReason reason = RateReason::kGesture;
 };
 
+/// The least multiple of a unit that is not below a rate, but for its rounding [1/s].
+double multiple_from(double rate_hz, double unit_hz) noexcept;
+
 /// For the integrator of the network; its step does not matter. O(liaisons).
 FormulaRate rate_by_formula(const engine::NetworkDescription& network, const AccuracyTarget& target,
                             double gesture_rate_hz);

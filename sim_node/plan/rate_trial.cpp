@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "sim_node/plan/rate.h"
 #include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/reference/trial_run.h"
 
@@ -142,8 +143,7 @@ RateTrial find_rate(const engine::NetworkDescription& network, const std::string
       const double order =
           std::clamp(std::log(before.error / now.error) / std::log(rate / rate_before), 0.3, 4.0);
       const double share = std::pow(before.error / (kMargin * options.tolerance), 1.0 / order);
-      const double between =
-          std::ceil(rate_before * share / options.unit_hz - 1e-9) * options.unit_hz;
+      const double between = multiple_from(rate_before * share, options.unit_hz);
       if (between >= rate || !runs.can_afford(between)) return trial;
       const double there = kFirstOrderFactor * runs.difference(between).error;
       if (there <= options.tolerance) {

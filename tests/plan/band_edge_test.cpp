@@ -115,6 +115,11 @@ void expect_within_plan(const Held& held, const std::string& what) {
       << what << ": decay " << decay << " in a run, " << edge.error.decay << " in the plan";
 }
 
+/// A number whose logarithm is as likely anywhere.
+double decades(std::mt19937& random, double low, double high) {
+  return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
+}
+
 class BandEdge : public testing::TestWithParam<IntegratorKind> {};
 
 INSTANTIATE_TEST_SUITE_P(Integrators, BandEdge,
@@ -124,32 +129,26 @@ INSTANTIATE_TEST_SUITE_P(Integrators, BandEdge,
 
 TEST_P(BandEdge, HoldsBesideMaxwellElements) {
   std::mt19937 random(test_seed());
-  const auto decades = [&](double low, double high) {
-    return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
-  };
   for (int n = 0; n < rounds(40); ++n) {
     Held held(GetParam());
-    const double w = decades(60.0, 500.0);
-    held.add_link(w * w, decades(0.5, 5.0));
-    const double k = decades(0.01, 3.0) * w * w;
+    const double w = decades(random, 60.0, 500.0);
+    held.add_link(w * w, decades(random, 0.5, 5.0));
+    const double k = decades(random, 0.01, 3.0) * w * w;
     // from a damper to a spring; not so viscous that nothing swings
-    held.add_maxwell(k, std::min(k / w * decades(0.01, 100.0), 0.3 * w));
+    held.add_maxwell(k, std::min(k / w * decades(random, 0.01, 100.0), 0.3 * w));
     expect_within_plan(held, std::to_string(n));
   }
 }
 
 TEST_P(BandEdge, HoldsBesideLinksWithStates) {
   std::mt19937 random(test_seed());
-  const auto decades = [&](double low, double high) {
-    return low * std::pow(high / low, std::uniform_real_distribution<double>()(random));
-  };
   for (int n = 0; n < rounds(40); ++n) {
     Held held(GetParam());
-    const double w = decades(60.0, 500.0);
+    const double w = decades(random, 60.0, 500.0);
     const double share = std::uniform_real_distribution<double>(0.0, 1.0)(random);
     const double k = n % 3 == 2 ? 0.0 : share * w * w;
-    held.add_link(w * w - k + 1.0, decades(0.1, 2.0));
-    const double z = decades(1.0, 0.2 * w);
+    held.add_link(w * w - k + 1.0, decades(random, 0.1, 2.0));
+    const double z = decades(random, 1.0, 0.2 * w);
     Behaving machine;
     if (n % 3 == 0) {  // the other state is much stiffer, and never entered
       machine.state(share * w * w, z)
