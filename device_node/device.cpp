@@ -65,18 +65,21 @@ Device::Device(LoadedDevice device, dds::Participant& participant, dds::Particip
                   ? std::chrono::duration<double>(kLockstepPatience).count()
                   : config_.force_guard.watchdog_s),
       scenes_(participant, config_, *driver_),
-      status_(participant, msg::KIND_DEVICE_NODE, series.epoch, [this](msg::NodeStatus& status) {
-        meter_.fill(status);
-        if (meter_.phase() == Phase::kNeverConnected || meter_.phase() == Phase::kReplaced)
-          status.text("driver " + name_of_driver(config_, *driver_) + ": " + status.text());
-        const std::string refusal = scenes_.refusal();
-        if (!refusal.empty()) status.text("refused " + refusal);
-        if (status.text().empty() && status.phase() != msg::PHASE_STOPPED)
-          status.text(what_it_is(config_));
-        // in lockstep the scene's answers set the pace
-        status.target_rate_hz(
-            clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz * time_scale());
-      }) {
+      status_(
+          participant, msg::KIND_DEVICE_NODE, series.epoch,
+          [this](msg::NodeStatus& status) {
+            meter_.fill(status);
+            if (meter_.phase() == Phase::kNeverConnected || meter_.phase() == Phase::kReplaced)
+              status.text("driver " + name_of_driver(config_, *driver_) + ": " + status.text());
+            const std::string refusal = scenes_.refusal();
+            if (!refusal.empty()) status.text("refused " + refusal);
+            if (status.text().empty() && status.phase() != msg::PHASE_STOPPED)
+              status.text(what_it_is(config_));
+            // in lockstep the scene's answers set the pace
+            status.target_rate_hz(
+                clock_ == config::Clock::kLockstep ? 0.0 : config_.layout.rate_hz * time_scale());
+          },
+          nullptr, &for_loop) {
   if (PointerPort* const port = driver_->pointer_port())
     pointer_.emplace(participant, config_, *port, series.epoch);
 }

@@ -43,8 +43,10 @@ double resident_bytes() {
 }  // namespace
 
 StatusPublisher::StatusPublisher(dds::Participant& participant, msg::NodeKind kind,
-                                 std::uint64_t epoch, Fill fill, Watch watch)
+                                 std::uint64_t epoch, Fill fill, Watch watch,
+                                 const dds::Participant* for_loop)
     : participant_(participant),
+      for_loop_(for_loop),
       writer_(participant, dds::Topic::kStatus),
       fill_(std::move(fill)),
       watch_(std::move(watch)),
@@ -95,7 +97,8 @@ bool StatusPublisher::wait_until(std::chrono::steady_clock::time_point next) {
 /// Reports a mismatch with another process of the session: in the status while it lasts, in the log
 /// once.
 void StatusPublisher::report_mismatch() {
-  const std::string mismatch = participant_.mismatch();
+  std::string mismatch = participant_.mismatch();
+  if (mismatch.empty() && for_loop_ != nullptr) mismatch = for_loop_->mismatch();
   if (mismatch != mismatch_ && !mismatch.empty() && mismatches_.record(monotonic_nsec()))
     spdlog::warn("{}", mismatch);
   mismatch_ = mismatch;

@@ -28,8 +28,10 @@ class StatusPublisher {
   /// What the publisher's thread does 25 times a second, between two messages; must not block.
   using Watch = std::function<void()>;
 
+  /// @param for_loop  the participant of the node's force loop, whose topics may not fit those of
+  /// other processes either; null: the node has none
   StatusPublisher(dds::Participant& participant, msg::NodeKind kind, std::uint64_t epoch, Fill fill,
-                  Watch watch = nullptr);
+                  Watch watch = nullptr, const dds::Participant* for_loop = nullptr);
 
   /// Publishes the last status, not before others can have found this node, and waits a moment
   /// until it has arrived: 0.8 s after a run of no time at worst.
@@ -50,6 +52,7 @@ class StatusPublisher {
   void report_rejoin();
 
   const dds::Participant& participant_;
+  const dds::Participant* for_loop_;
   std::string mismatch_;
   RepeatedEvent mismatches_{"this node did not fit other processes of the session"};
   RepeatedEvent rejoins_{"processes that DDS had dropped were there again"};

@@ -48,7 +48,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
             report_time_scale(status, loop_.time_scale());
             status.lost_events(loop_.lost_events());
           },
-          [this] { snapshot_.watch(); }),
+          [this] { snapshot_.watch(); }, &loop_participant_),
       control_(start, config.force, participant_, devices_, snapshot_, loop_, status_) {
   if (config.paused) loop_.begin_paused();
 }

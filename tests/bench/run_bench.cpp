@@ -9,6 +9,7 @@
 #include "cli/bench/plain_loop.h"
 #include "sim_node/engine/world.h"
 #include "sim_node/scene/sections/scene_reader.h"
+#include "tests/support/filled.h"
 
 namespace {
 
@@ -79,12 +80,17 @@ constexpr Matter kMatter[] = {
 
 NetworkDescription generated(const Matter& matter) {
   cordis::config::Problems problems;
-  cordis::scene::Scene scene = cordis::scene::load_scene_text(
-      "cordis: 1\nname: matter\nspace: " + std::to_string(matter.space) +
-          "\nstep: {rate_hz: 1000}\nmatter:\n  m: {mass_kg: 0.01, stiffness_n_per_m: 100, "
-          "viscosity_n_s_per_m: 0.01, kind: " +
-          matter.keys + "}\n",
-      matter.name, problems);
+  const std::string text =
+      cordis::test::filled(R"(
+cordis: 1
+name: matter
+space: <space>
+step: {rate_hz: 1000}
+matter:
+  m: {mass_kg: 0.01, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.01, kind: <keys>}
+)",
+                           {{"space", std::to_string(matter.space)}, {"keys", matter.keys}});
+  cordis::scene::Scene scene = cordis::scene::load_scene_text(text, matter.name, problems);
   problems.throw_if_any();
   scene.network.mats[0].velocity.x() = 0.01;
   return scene.network;

@@ -65,6 +65,28 @@ TEST_P(ForceLoop, NodesClaimTheRateThatTheyKeepAndNoneInLockstep) {
   }
 }
 
+/// Nodes that one launch file starts with different clocks do not share the force loop.
+TEST_P(ForceLoop, NodesOfAnotherClockSayItInTheirStatusAndInTheLog) {
+  const std::string clock = GetParam();
+  const std::string other = clock == "lockstep" ? "clock=realtime" : "clock=lockstep";
+  LiveSession session(clock, kSimAndKey);
+  StatusWatch status(session.participant());
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard", {other});
+
+  for (const char* node : {"sim", "keyboard"}) {
+    const auto names_the_clock = [](const msg::NodeStatus& one) {
+      return one.text().find("has another clock than that of this node") != std::string::npos;
+    };
+    EXPECT_TRUE(status.wait_for(node, names_the_clock)) << node << ": " << status.of(node).text();
+    EXPECT_TRUE(
+        session.node(node).wait_for_output("has another clock than that of this node", kPatience))
+        << node;
+  }
+}
+
 /// How many threads of a process have each priority of SCHED_FIFO.
 std::map<int, int> realtime_threads_of(pid_t process) {
   std::map<int, int> counts;

@@ -19,11 +19,16 @@ const row = (page, name) => page.locator(`#parameters-list li[data-parameter="${
 const targetRate = async (page) => (await viz(page, 'nodes')).find(({ kind }) => kind === 'sim_node').target_rate_hz;
 const numberOf = (page, name) => row(page, name).locator('input[type=number]');
 
+/** Opens the list of parameters, unless it is open: a page that was loaded again has it closed. */
+async function openList(page) {
+  if (!(await page.locator('#parameters-list').isVisible())) await page.click('#parameters-open');
+  await until('the parameters are listed', async () => (await page.locator('#parameters-list li').count()) >= 2);
+}
+
 const cases = {
   'every parameter of the scene has a slider and a number': async ({ page }) => {
     await drawn(page, 2);
-    await page.click('#parameters-open');
-    await until('the parameters are listed', async () => (await page.locator('#parameters-list li').count()) >= 2);
+    await openList(page);
     assert.equal(await row(page, STIFFNESS).locator('label').textContent(), 'finger stiffness [N/m]');
     assert.equal(await numberOf(page, STIFFNESS).inputValue(), '80');
     assert.equal(await row(page, STIFFNESS).locator('input[type=range]').getAttribute('aria-label'), `${STIFFNESS}, slider`);
@@ -32,14 +37,17 @@ const cases = {
 
   'a slider that is moved by a key sets its parameter, and shows what is set': async (session) => {
     const { page } = session;
+    await openList(page);
     await row(page, STIFFNESS).locator('input[type=range]').focus();
-    await page.keyboard.press('End'); // ten times the first value
-    await until('sim_node has it', async () => (await reported(session, STIFFNESS)).endsWith(`${STIFFNESS} = 800`));
-    await until('the page shows it', async () => (await numberOf(page, STIFFNESS).inputValue()) === '800');
+    // A tenth of the first value. The keyboard supports it before its answers are measured, and on a busy machine.
+    await page.keyboard.press('Home');
+    await until('sim_node has it', async () => (await reported(session, STIFFNESS)).endsWith(`${STIFFNESS} = 8`));
+    await until('the page shows it', async () => (await numberOf(page, STIFFNESS).inputValue()) === '8');
   },
 
   'a number that is written sets its parameter; one that is refused says why, and the page shows what is': async (session) => {
     const { page } = session;
+    await openList(page);
     await numberOf(page, STIFFNESS).fill('120');
     await page.keyboard.press('Enter');
     await until('sim_node has it', async () => (await reported(session, STIFFNESS)).endsWith(`${STIFFNESS} = 120`));
@@ -54,6 +62,7 @@ const cases = {
   'gravity has a slider that goes from one direction to the other': async (session) => {
     const { page } = session;
     const name = 'world.gravity_y_m_per_s2';
+    await openList(page);
     assert.equal(await row(page, name).locator('label').textContent(), 'world gravity y [m/s²]');
     assert.equal(await numberOf(page, name).inputValue(), '0');
     await row(page, name).locator('input[type=range]').focus();

@@ -76,8 +76,8 @@ export async function openPage(session, url) {
   session.askPage = async () => {
     const asked = session.page
       .evaluate(() => {
-        const { connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, errors } = window.viz;
-        return JSON.stringify({ connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, errors });
+        const { connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, replies, errors } = window.viz;
+        return JSON.stringify({ connected, frozen, framesReceived, framesDrawn, lastFrame, lag_s, dropped, nodes, scene, replies, errors });
       })
       .catch((error) => String(error));
     const state = await Promise.race([asked, pause(5000).then(() => 'no answer')]);
