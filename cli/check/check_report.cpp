@@ -433,7 +433,8 @@ constexpr double kLargestError = 20.0;
 std::string freezing_text(double tolerance) {
   if (tolerance == 0.0) return {};
   return fmt::format(
-      "frozen      what rests within {:.2g} m: at rest, positions off by at most {:.2g} m\n",
+      "frozen      what rests within {:.2g} m: at rest, positions off by at most {:.2g} m;\n"
+      "            more on the way, where much moves slowly together\n",
       tolerance, kLargestError * tolerance);
 }
 

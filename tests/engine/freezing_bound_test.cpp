@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iostream>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,32 @@ TEST(FreezingBound, LetsASwingingPendulumSwing) {
 
   EXPECT_NEAR(least, -0.0244, 1e-4);
   EXPECT_NEAR(most, 0.0244, 1e-4);
+}
+
+/// What docs/reductions.md says of a stiff pair on a soft spring.
+TEST(FreezingBound, IsLateWhereAPairSwingsSlowlyAndIsOffByLittleWhereItComesToRest) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 2e-4;
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(1.003, 0, 0)), mass(1.0, Vec3(1.103, 0, 0))};
+  scene.links = {{0, 1, 0.01, 0.0, 1.0}, {1, 2, 1e4, 1.0, 0.1}};
+  const auto difference_after = [&](double seconds) {
+    World whole = make_world(scene);
+    World part = make_world(frozen(scene, kBoundTolerance));
+    double largest = 0.0;
+    double last = 0.0;
+    for (double time = 0.0; time < seconds; time += 0.5) {
+      run(whole, 2500);
+      run(part, 2500);
+      last = std::abs(part.position(1).x() - whole.position(1).x());
+      largest = std::max(largest, last);
+    }
+    return std::pair(largest, last);
+  };
+
+  EXPECT_NEAR(difference_after(200.0).first, 1.5e-3, 0.05e-3);
+  scene.medium_viscosity = 0.05;
+  EXPECT_LT(difference_after(1000.0).second, kLargestError * kBoundTolerance);
 }
 
 TEST(FreezingBound, LetsAPulledBodyStart) {
