@@ -161,8 +161,13 @@ std::string swing_text(double frequency_hz, const plan::OscillatorError& error) 
                      percent(error.decay));
 }
 
-std::string accuracy_text(const SceneCheck& check) {
-  const plan::BandEdge& edge = check.plan.band_edge;
+/// True where a force or a law asks for what masses do, without a bound: no stiffness and no viscosity stands for it.
+bool leaves_signals_out(const SceneCheck& check) {
+  const auto& uncertainty = check.plan.stability.uncertainty;
+  return uncertainty && !uncertainty->variables.empty();
+}
+
+std::string band_edge_text(const plan::BandEdge& edge) {
   if (edge.error.creeps) {
     const std::string creep = percent(edge.error.creep);
     if (edge.swinging && edge.swinging->oscillates) {
@@ -178,6 +183,12 @@ std::string accuracy_text(const SceneCheck& check) {
                        edge.frequency_hz);
   }
   return swing_text(edge.frequency_hz, edge.error);
+}
+
+std::string accuracy_text(const SceneCheck& check) {
+  return band_edge_text(check.plan.band_edge) +
+         (leaves_signals_out(check) ? "            without what the signals named above bring in\n"
+                                    : "");
 }
 
 /// What the scene asks for, and what the plan does about it.
@@ -508,7 +519,8 @@ std::string json_of(const SceneCheck& check) {
                         {"creeps", edge.error.creeps},
                         {"creep_error", edge.error.creep},
                         {"pitch_error", swing.pitch},
-                        {"decay_error", swing.decay}}},
+                        {"decay_error", swing.decay},
+                        {"leaves_signals_out", leaves_signals_out(check)}}},
                       {"ports", ports_json(check)},
                       {"problems", problems_json(check.problems)},
                       {"reductions", reductions_json(check.scene.reductions)}};

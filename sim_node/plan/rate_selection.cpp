@@ -36,7 +36,14 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   const FormulaRate formula = rate_by_formula(network, target, gesture_rate_hz);
   RateSelection selection{
       integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0, {}};
-  if (target.over_s == 0.0) return selection;
+  if (target.over_s == 0.0) {
+    const std::optional<Uncertainty> uncertainty = uncertainty_of(network, liaison_graph(network));
+    if (uncertainty && !uncertainty->variables.empty()) {
+      selection.uncertainty = "pitch and decay are those without what signals bring in";
+      selection.unstable = uncertainty;
+    }
+    return selection;
+  }
   if (has_ports) {
     selection.uncertainty =
         "positions are promised for free vibrations alone: its ports are played";

@@ -17,7 +17,7 @@ struct RateSelection {
   double needed_hz = 0.0;   ///< the least that serves
   std::string because;      ///< for a person: what asks for so much
   double error = -1.0;      ///< position error after over_s, as tried out; < 0: not tried
-  std::string uncertainty;  ///< why the positions are not promised; empty when they are
+  std::string uncertainty;  ///< what is not promised, and why; empty when all is
   /// Where that is why: what keeps the scene from being certain.
   std::optional<Uncertainty> unstable = {};
 };

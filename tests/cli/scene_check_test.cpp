@@ -276,6 +276,46 @@ links:
   EXPECT_EQ(out_.find("no step is too long"), std::string::npos) << out_;
 }
 
+TEST_F(Checked, WhatSignalsBringInIsSaidToBeLeftOutOfTheErrors) {
+  const auto check = [&](const std::string& asked, const std::string& force) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: brake
+space: 1
+step: {integrator: cordis}
+accuracy: {<asked>}
+matter:
+  ground: {kind: fixed, at_m: [0]}
+  bob: {kind: mass, mass_kg: 0.1, at_m: [0.1], driven: {force_n: ["<force>"]}}
+liaisons:
+  holder: {kind: spring, stiffness_n_per_m: 1000}
+links:
+  - {liaison: holder, between: [ground, bob]}
+signals:
+  v: {of: bob, quantity: velocity, axis: x}
+)",
+                                         {{"asked", asked}, {"force", force}});
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    return out_;
+  };
+  const std::string kLeftOut = "            without what the signals named above bring in\n";
+  const std::string kPromise = "pitch and decay are those without what signals bring in: ";
+  for (const char* asked :
+       {"tolerance: 0.01, band_hz: 40", "tolerance: 0.1, band_hz: 40, over_s: 0.1"}) {
+    const std::string by_signal = check(asked, "-0.5 * v");
+    EXPECT_NE(by_signal.find(kLeftOut), std::string::npos) << by_signal;
+    EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+    EXPECT_TRUE(nlohmann::json::parse(out_)["accuracy"]["leaves_signals_out"].get<bool>());
+
+    const std::string by_velocity = check(asked, "-0.5 * velocity_x_m_per_s");
+    EXPECT_EQ(by_velocity.find(kLeftOut), std::string::npos) << by_velocity;
+    EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+    EXPECT_FALSE(nlohmann::json::parse(out_)["accuracy"]["leaves_signals_out"].get<bool>());
+  }
+  EXPECT_NE(check("tolerance: 0.01, band_hz: 40", "-0.5 * v").find(kPromise), std::string::npos)
+      << out_;
+  EXPECT_NE(error_.find("warning: " + kPromise), std::string::npos) << error_;
+}
+
 TEST_F(Checked, BetweenTheTwoLimitsItSaysWhatTheRunWatches) {
   // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
   std::ofstream(path_) << test::snatch("410000");
