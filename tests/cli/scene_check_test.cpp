@@ -279,7 +279,7 @@ links:
 TEST_F(Checked, WhatSignalsBringInIsSaidToBeLeftOutOfTheErrors) {
   const auto check = [&](const std::string& asked, const std::string& force) {
     std::ofstream(path_) << test::filled(R"(cordis: 1
-name: brake
+name: slowed
 space: 1
 step: {integrator: cordis}
 accuracy: {<asked>}
