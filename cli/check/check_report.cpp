@@ -211,6 +211,11 @@ std::string choice_text(const SceneCheck& check) {
         choice.needed_hz, choice.because, check.scene.step_rate_hz);
   }
   if (choice.error >= 0.0) text += fmt::format("; tried out: {:.2g}", choice.error);
+  if (choice.worst_body) {
+    text += fmt::format(
+        "\n            what is joined to {} moves by itself with an error of {:.2g} of that",
+        scene::call_mat(check.scene, choice.worst_body->mat).name, choice.worst_body->error);
+  }
   if (!choice.uncertainty.empty()) text += "\n            " + choice.uncertainty;
   return text + "\n";
 }
@@ -548,6 +553,10 @@ std::string json_of(const SceneCheck& check) {
         {"needed_hz", check.choice->needed_hz},   {"because", check.choice->because},
         {"kept", check.keeps_accuracy()},         {"uncertainty", check.choice->uncertainty}};
     if (check.choice->error >= 0.0) json["asked"]["tried_out_error"] = check.choice->error;
+    if (const auto& worst = check.choice->worst_body) {
+      json["asked"]["worst_body"] = {{"mat", called(scene::call_mat(check.scene, worst->mat))},
+                                     {"error", finite(worst->error)}};
+    }
   }
   if (check.plan.worst_contact) {
     json["worst_contact"] = {

@@ -3,12 +3,19 @@
 
 #include <string>
 
+#include <fmt/format.h>
+
 #include "node/config/mapping_reader.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/plan/reference/trial_run.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
+namespace {
+
+constexpr double kManyTolerances = 10.0;  // of one body: what moves with it hides it
+
+}  // namespace
 
 std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Problems& problems) {
   if (!scene.accuracy) return {};
@@ -26,6 +33,15 @@ std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Prob
     selection.uncertainty += ": " + uncertainty_text(scene, *selection.unstable);
   }
   if (!selection.uncertainty.empty()) problems.warning(place, selection.uncertainty);
+  if (selection.worst_body && selection.worst_body->error > kManyTolerances * asked.tolerance) {
+    problems.warning(
+        asked.place,
+        fmt::format(
+            "the tolerance is that of all motion together: what is joined to {} moves by itself "
+            "with an error of {:.2g} of that",
+            scene::call_mat(scene, selection.worst_body->mat).name, selection.worst_body->error),
+        "take a smaller tolerance, or put what travels far into a scene of its own");
+  }
   const bool is_possible = selection.rate_hz <= scene::kHighestStepRate;
   if (scene.rate_is_open && !is_possible) {
     problems.error(asked.place,

@@ -34,8 +34,8 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
                          double gesture_rate_hz, const std::string& integrator, bool has_ports) {
   network.integrator = engine::integrator_named(integrator);
   const FormulaRate formula = rate_by_formula(network, target, gesture_rate_hz);
-  RateSelection selection{
-      integrator, formula.rate_hz, formula.needed_hz, to_string(formula.reason), -1.0, {}};
+  RateSelection selection{integrator, formula.rate_hz, formula.needed_hz,
+                          to_string(formula.reason)};
   if (target.over_s == 0.0) {
     const std::optional<Uncertainty> uncertainty = uncertainty_of(network, liaison_graph(network));
     if (uncertainty && !uncertainty->variables.empty()) {
@@ -69,6 +69,8 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   }
   selection.rate_hz = selection.needed_hz = trial.rate_hz;
   selection.error = trial.error;
+  if (trial.worst_body && trial.worst_body->error > target.tolerance)
+    selection.worst_body = trial.worst_body;
   if (trial.rate_hz > lowest_hz) {
     selection.because = "the positions, as tried out";
   } else {

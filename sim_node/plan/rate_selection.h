@@ -7,17 +7,20 @@
 
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/rate.h"
+#include "sim_node/plan/rate_trial.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 
 namespace cordis::plan {
 
 struct RateSelection {
   std::string integrator;
-  double rate_hz = 0.0;     ///< a multiple of the gesture rate
-  double needed_hz = 0.0;   ///< the least that serves
-  std::string because;      ///< for a person: what asks for so much
-  double error = -1.0;      ///< position error after over_s, as tried out; < 0: not tried
-  std::string uncertainty;  ///< what is not promised, and why; empty when all is
+  double rate_hz = 0.0;    ///< a multiple of the gesture rate
+  double needed_hz = 0.0;  ///< the least that serves
+  std::string because;     ///< for a person: what asks for so much
+  double error = -1.0;     ///< position error after over_s, as tried out; < 0: not tried
+  /// Beside that: the body whose own motion is off by the most, where that is more than the tolerance.
+  std::optional<OwnError> worst_body = {};
+  std::string uncertainty = {};  ///< what is not promised, and why; empty when all is
   /// Where that is why: what keeps the scene from being certain.
   std::optional<Uncertainty> unstable = {};
 };

@@ -1,6 +1,8 @@
 // sim_node/plan/rate_trial.h -- the lowest rate that keeps a tolerance, found by trying.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "sim_node/engine/description/network.h"
@@ -15,10 +17,21 @@ struct RateTrialOptions {
   double highest_hz = 1e6;  ///< not above
 };
 
+/// A body is what linear links, links with states and Maxwell elements join. Its own motion is that of its
+/// masses against their mean, and the whole of it where it is joined to what does not move freely.
+struct OwnError {
+  double error =
+      0.0;  ///< root of the mean square of its own position errors, over that of its own motion
+  std::uint32_t mat = 0;  ///< the first mass of the body
+};
+
 struct RateTrial {
   double rate_hz = 0.0;  ///< 0: none was found
   double error = 0.0;    ///< at this rate, as estimated
-  std::string refusal;   ///< why none was found
+  /// The body whose own motion is off by the most. It may be off by far more than the whole, beside what
+  /// travels far. None where no body moves by itself.
+  std::optional<OwnError> worst_body;
+  std::string refusal;  ///< why none was found
 };
 
 /// Plays the network by itself, its ports at rest, at rates that double. The error is the

@@ -316,6 +316,37 @@ signals:
   EXPECT_NE(error_.find("warning: " + kPromise), std::string::npos) << error_;
 }
 
+TEST_F(Checked, WhatVibratesBesideWhatTravelsFarHasAnErrorOfItsOwn) {
+  const auto check = [&](const std::string& speed) {
+    std::ofstream(path_) << test::filled(R"(cordis: 1
+name: pair
+space: 1
+step: {integrator: cordis}
+accuracy: {tolerance: 0.01, band_hz: 1, over_s: 1}
+matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0], velocity_m_per_s: [<speed>]}
+  b: {kind: mass, mass_kg: 1, at_m: [1.0001], velocity_m_per_s: [<speed>]}
+liaisons:
+  stiff: {kind: spring, stiffness_n_per_m: 500000, rest_m: 1}
+links:
+  - {liaison: stiff, between: [a, b]}
+)",
+                                         {{"speed", speed}});
+    EXPECT_EQ(run({}), kSuccess) << error_;
+    return out_;
+  };
+  const std::string kOwn = "what is joined to a moves by itself with an error of ";
+  EXPECT_NE(check("10").find(kOwn), std::string::npos) << out_;
+  EXPECT_NE(error_.find("warning: the tolerance is that of all motion together: " + kOwn),
+            std::string::npos)
+      << error_;
+  EXPECT_EQ(run({"--json", "-"}), kSuccess) << error_;
+  const nlohmann::json json = nlohmann::json::parse(out_);
+  EXPECT_EQ(json["asked"]["worst_body"]["mat"]["name"], "a") << out_;
+  EXPECT_GT(json["asked"]["worst_body"]["error"].get<double>(), 0.1);
+  EXPECT_EQ(check("0").find(kOwn), std::string::npos) << out_;
+}
+
 TEST_F(Checked, BetweenTheTwoLimitsItSaysWhatTheRunWatches) {
   // taut: K dt^2 / m = 4.1, by a state that nothing has entered at the start
   std::ofstream(path_) << test::snatch("410000");

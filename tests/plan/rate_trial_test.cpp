@@ -120,6 +120,54 @@ TEST(RateTrial, KeepsTheToleranceOfRandomOscillators) {
   }
 }
 
+/// A pair of masses that flies, and vibrates by itself as little as a tenth of a millimetre.
+TEST(RateTrial, StatesTheErrorOfWhatVibratesBesideWhatTravelsFar) {
+  std::mt19937 random(20261201);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int hidden = 0;
+  for (int round = 0; round < 20; ++round) {
+    const double frequency = 20.0 + 60.0 * unit(random);
+    const double start = std::pow(10.0, -4.0 - 2.0 * unit(random));
+    const double over_s = 0.2 + 0.3 * unit(random);
+    const double w = 2.0 * std::numbers::pi * frequency;
+    NetworkDescription scene = oscillator(1.0, 1.0, 0.0, kStart, 0.0, 1e-3);
+    scene.mats = {mass(1.0, Vec3(0, 0, 0)), mass(1.0, Vec3(1.0 + start, 0, 0))};
+    for (auto& mat : scene.mats) mat.velocity = Vec3(10.0 * unit(random), 0, 0);
+    scene.mats[1].velocity = scene.mats[0].velocity;
+    scene.links = {{0, 1, 0.5 * w * w, 0.0, 1.0}};
+
+    const plan::RateTrial trial =
+        plan::find_rate(scene, "cordis", {0.01, over_s, kLowest, kLowest});
+
+    ASSERT_GT(trial.rate_hz, 0.0) << trial.refusal;
+    ASSERT_TRUE(trial.worst_body.has_value());
+    EXPECT_EQ(trial.worst_body->mat, 0U);
+    scene.step = 1.0 / trial.rate_hz;
+    World world = make_world(scene);
+    double off = 0.0;
+    double motion = 0.0;
+    for (long step = 1; step <= std::lround(over_s * trial.rate_hz); ++step) {
+      world.step();
+      const double exact = start * std::cos(w * static_cast<double>(step) / trial.rate_hz);
+      const double apart = world.position(1).x() - world.position(0).x() - 1.0 - exact;
+      off += apart * apart;
+      motion += exact * exact;
+    }
+    const double own = std::sqrt(off / motion);
+    EXPECT_LT(own, kFactor * trial.worst_body->error) << frequency << " Hz, " << start << " m";
+    EXPECT_GT(own, 0.7 * trial.worst_body->error) << frequency << " Hz, " << start << " m";
+    if (own > trial.error) ++hidden;
+  }
+  EXPECT_GT(hidden, 10) << "the whole hides it";
+}
+
+TEST(RateTrial, OfOneBodyThatIsHeldIsItsOwnError) {
+  const plan::RateTrial trial =
+      plan::find_rate(oscillators({40.0}), "cordis", {0.01, 0.5, kLowest, kLowest});
+  ASSERT_TRUE(trial.worst_body.has_value());
+  EXPECT_NEAR(trial.worst_body->error, trial.error, 1e-12);
+}
+
 TEST(RateTrial, MeasuresWhatDiesAtOnceByItsWholeMotion) {
   // The vibration of 60.3 Hz is gone after 2 ms: what is left of 10 s is rest.
   const double w = std::sqrt(143547.079467);
