@@ -20,8 +20,8 @@ struct RateTrialOptions {
 /// A body is what linear links, links with states and Maxwell elements join. Its own motion is that of its
 /// masses against their mean, and the whole of it where it is joined to what does not move freely.
 struct OwnError {
-  double error =
-      0.0;  ///< root of the mean square of its own position errors, over that of its own motion
+  /// Root of the mean square of its own position errors, over that of its own motion.
+  double error = 0.0;
   std::uint32_t mat = 0;  ///< the first mass of the body
 };
 
