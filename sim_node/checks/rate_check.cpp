@@ -1,9 +1,8 @@
 // sim_node/checks/rate_check.cpp
 #include "sim_node/checks/rate_check.h"
 
+#include <cstdio>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "node/config/mapping_reader.h"
 #include "sim_node/checks/stability_check.h"
@@ -34,13 +33,13 @@ std::optional<plan::RateSelection> select_rate(scene::Scene& scene, config::Prob
   }
   if (!selection.uncertainty.empty()) problems.warning(place, selection.uncertainty);
   if (selection.worst_body && selection.worst_body->error > kManyTolerances * asked.tolerance) {
-    problems.warning(
-        asked.place,
-        fmt::format(
-            "the tolerance is that of all motion together: what is joined to {} moves by itself "
-            "with an error of {:.2g} of that",
-            scene::call_mat(scene, selection.worst_body->mat).name, selection.worst_body->error),
-        "take a smaller tolerance, or put what travels far into a scene of its own");
+    char error[32];
+    std::snprintf(error, sizeof(error), "%.2g", selection.worst_body->error);
+    problems.warning(asked.place,
+                     "the tolerance is that of all motion together: what is joined to " +
+                         scene::call_mat(scene, selection.worst_body->mat).name +
+                         " moves by itself with an error of " + error + " of that",
+                     "take a smaller tolerance, or put what travels far into a scene of its own");
   }
   const bool is_possible = selection.rate_hz <= scene::kHighestStepRate;
   if (scene.rate_is_open && !is_possible) {
