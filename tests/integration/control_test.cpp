@@ -385,6 +385,7 @@ TEST_F(ControlInRealtime, SlowMotionIsFollowedByTheKeyAndSilencesNobody) {
   const msg::NodeStatus sim = status_.of("sim");
   const msg::NodeStatus key = status_.of("keyboard");
   EXPECT_NEAR(pace(80) / full, 0.01, 0.005);
+  EXPECT_TRUE(feels(2.0, forces, force)) << "it grows again after a stall of the machine";
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(eventually([&] { return forces.take(force); }));
     EXPECT_NEAR(force.force_n()[0], 2.0, 1e-9);
