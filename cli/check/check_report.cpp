@@ -161,10 +161,10 @@ std::string swing_text(double frequency_hz, const plan::OscillatorError& error) 
                      percent(error.decay));
 }
 
-/// True where a force or a law asks for what masses do, without a bound: no stiffness and no viscosity stands for it.
+/// True if the errors leave out what signals of moving masses bring in.
 bool leaves_signals_out(const SceneCheck& check) {
   const auto& uncertainty = check.plan.stability.uncertainty;
-  return uncertainty && !uncertainty->variables.empty();
+  return uncertainty && uncertainty->leaves_variables_free();
 }
 
 std::string band_edge_text(const plan::BandEdge& edge) {

@@ -12,7 +12,7 @@
 namespace cordis::sim {
 namespace {
 
-constexpr double kManyTolerances = 10.0;  // of one body: what moves with it hides it
+constexpr double kManyTolerances = 10.0;  // a larger error of one body is a warning
 
 }  // namespace
 

@@ -53,7 +53,7 @@ ConnectedComponents::ConnectedComponents(const NetworkDescription& network,
       mat_.push_back(mat);
     }
   }
-  parent_.resize(mat_.size());
+  joined_ = node::DisjointSets(mat_.size());
   component_.resize(mat_.size());
   found_.resize(count_p_ + kPairBatch);
   position_.resize(4 * (mat_.size() + kPairBatch), 0.0);
@@ -70,7 +70,7 @@ void ConnectedComponents::keep_near(double distance) {
 
 std::size_t ConnectedComponents::find_near(const Columns& positions, double distance) noexcept {
   CORDIS_ASSERT(distance > 0.0);
-  begin();
+  joined_.separate();
   for (std::size_t m = 0; m < mat_.size(); ++m) {
     std::copy_n(positions.col(mat_[m]).data(), 4, position_.data() + 4 * m);
   }
@@ -95,7 +95,7 @@ void ConnectedComponents::join_kept(double distance) noexcept {
         const double y = position[column + 1] - position_a[1];
         const double z = position[column + 2] - position_a[2];
         if (!(x * x + y * y + z * z < distance * distance)) continue;
-        join(static_cast<std::uint32_t>(a), column / 4);
+        joined_.join(static_cast<std::uint32_t>(a), column / 4);
       }
     }
   }
@@ -114,19 +114,20 @@ void ConnectedComponents::join_found(double distance) noexcept {
     for (std::size_t r = 0; r < around.count; ++r) {
       const CellGrid::Run run = around.runs[r];
       const std::size_t count = kernel_->find_near(table, run.begin, run.end, query, found_.data());
-      for (std::size_t i = 0; i < count; ++i) join(found_[i], static_cast<std::uint32_t>(b));
+      for (std::size_t i = 0; i < count; ++i)
+        joined_.join(found_[i], static_cast<std::uint32_t>(b));
     }
   }
 }
 
 std::size_t ConnectedComponents::find_bound(std::span<const BoundPair> pairs) noexcept {
-  begin();
+  joined_.separate();
   for (const BoundPair& pair : pairs) join(pair);
   return number_components();
 }
 
 std::size_t ConnectedComponents::find_bound(const World& world, std::size_t set) noexcept {
-  begin();
+  joined_.separate();
   join_bound(world, set);
   return number_components();
 }
@@ -141,7 +142,7 @@ void ConnectedComponents::join_bound(const World& world, std::size_t set) noexce
 std::size_t ConnectedComponents::find_joined(const World& world,
                                              std::span<const std::uint32_t> sets,
                                              std::span<const std::uint32_t> state_links) noexcept {
-  begin();
+  joined_.separate();
   for (const std::uint32_t set : sets) join_bound(world, set);
   const std::vector<StateLink>& links = world.network().description().state_links;
   for (const std::uint32_t link : state_links) {
@@ -155,32 +156,14 @@ void ConnectedComponents::join(const BoundPair& pair) noexcept {
   CORDIS_ASSERT(pair.mat_a < member_.size() && pair.mat_b < member_.size());
   const std::uint32_t a = member_[pair.mat_a];
   const std::uint32_t b = member_[pair.mat_b];
-  if (a != kNoMember && b != kNoMember) join(a, b);
-}
-
-void ConnectedComponents::begin() noexcept {
-  for (std::uint32_t m = 0; m < parent_.size(); ++m) parent_[m] = m;
-}
-
-std::uint32_t ConnectedComponents::root_of(std::uint32_t member) noexcept {
-  while (parent_[member] != member) {
-    parent_[member] = parent_[parent_[member]];
-    member = parent_[member];
-  }
-  return member;
-}
-
-void ConnectedComponents::join(std::uint32_t a, std::uint32_t b) noexcept {
-  const std::uint32_t root_a = root_of(a);
-  const std::uint32_t root_b = root_of(b);
-  parent_[std::max(root_a, root_b)] = std::min(root_a, root_b);
+  if (a != kNoMember && b != kNoMember) joined_.join(a, b);
 }
 
 /// The root of a component is its first member, so that its number is known to all later ones.
 std::size_t ConnectedComponents::number_components() noexcept {
   std::uint32_t count = 0;
-  for (std::uint32_t m = 0; m < parent_.size(); ++m) {
-    const std::uint32_t root = root_of(m);
+  for (std::uint32_t m = 0; m < component_.size(); ++m) {
+    const std::uint32_t root = joined_.root_of(m);
     component_[m] = root == m ? count++ : component_[root];
   }
   return count;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "node/assert.h"
+#include "node/disjoint_sets.h"
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/cell_grid.h"
@@ -63,13 +64,10 @@ class ConnectedComponents {
  private:
   ConnectedComponents(const NetworkDescription& network, const std::vector<std::uint32_t>& set_p,
                       const std::vector<std::uint32_t>& set_q);
-  void begin() noexcept;
   void join_kept(double distance) noexcept;
   void join_found(double distance) noexcept;
   void join_bound(const World& world, std::size_t set) noexcept;
   void join(const BoundPair& pair) noexcept;
-  void join(std::uint32_t a, std::uint32_t b) noexcept;
-  std::uint32_t root_of(std::uint32_t member) noexcept;
   std::size_t number_components() noexcept;
 
   std::size_t count_p_;
@@ -79,7 +77,7 @@ class ConnectedComponents {
   CellGrid grid_;
   std::vector<std::uint32_t> mat_;     // of each member
   std::vector<std::uint32_t> member_;  // of each MAT of the set
-  std::vector<std::uint32_t> parent_;  // an earlier member of the same component, or itself
+  node::DisjointSets joined_;          // of members
   std::vector<std::uint32_t> component_;
   std::vector<std::uint32_t> found_;
   AlignedVector<double> position_;  // 4 x members, padded to whole batches

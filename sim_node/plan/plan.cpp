@@ -438,7 +438,8 @@ LiaisonGraph with_edges(LiaisonGraph graph, const Keeps& keeps) {
   return graph;
 }
 
-/// Without contacts: they come and go, and their energy counts. @param at_edge  at_frequency()
+/// The part of a vibration that the integrator moves as `cordis` does. Contacts are left out: their error is
+/// that of worst_contact_of(). @param at_edge  the graph of at_frequency()
 MovedAsByCordis moved_as_by_cordis(const engine::NetworkDescription& network,
                                    const LiaisonGraph& at_edge, double w) {
   LiaisonGraph graph =

@@ -38,7 +38,7 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
                           to_string(formula.reason)};
   if (target.over_s == 0.0) {
     const std::optional<Uncertainty> uncertainty = uncertainty_of(network, liaison_graph(network));
-    if (uncertainty && !uncertainty->variables.empty()) {
+    if (uncertainty && uncertainty->leaves_variables_free()) {
       selection.uncertainty = "pitch and decay are those without what signals bring in";
       selection.unstable = uncertainty;
     }

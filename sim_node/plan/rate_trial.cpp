@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
+#include "node/disjoint_sets.h"
 #include "sim_node/plan/rate.h"
 #include "sim_node/plan/rate_selection.h"
 #include "sim_node/plan/reference/trial_run.h"
@@ -50,19 +50,14 @@ class Bodies {
  public:
   Bodies(const engine::NetworkDescription& network, const std::vector<std::uint32_t>& masses)
       : body_of_(masses.size()) {
-    std::vector<std::uint32_t> parent(network.mats.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root_of = [&parent](std::uint32_t mat) {
-      while (parent[mat] != mat) mat = parent[mat] = parent[parent[mat]];
-      return mat;
-    };
+    node::DisjointSets joined(network.mats.size());
     std::vector<bool> is_held(network.mats.size(), false);
     const auto join = [&](const auto& links) {
       for (const auto& link : links) {
         const bool a_moves = network.mats[link.mat_a].kind == engine::MatKind::kMass;
         const bool b_moves = network.mats[link.mat_b].kind == engine::MatKind::kMass;
         if (a_moves && b_moves) {
-          parent[root_of(link.mat_a)] = root_of(link.mat_b);
+          joined.join(link.mat_a, link.mat_b);
         } else {
           is_held[a_moves ? link.mat_a : link.mat_b] = true;
         }
@@ -73,7 +68,7 @@ class Bodies {
     join(network.maxwell_links);
     std::vector<std::size_t> body_at(network.mats.size(), kNone);
     for (std::size_t i = 0; i < masses.size(); ++i) {
-      std::size_t& body = body_at[root_of(masses[i])];
+      std::size_t& body = body_at[joined.root_of(masses[i])];
       if (body == kNone) {
         body = bodies_.size();
         bodies_.push_back({masses[i]});

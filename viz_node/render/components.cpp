@@ -3,41 +3,21 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 #include "node/assert.h"
+#include "node/disjoint_sets.h"
 
 namespace cordis::viz {
-namespace {
-
-/// The lowest MAT that one is joined to. The way there becomes short.
-std::uint32_t root_of(std::vector<std::uint32_t>& parents, std::uint32_t mat) noexcept {
-  std::uint32_t root = mat;
-  while (parents[root] != root) root = parents[root];
-  while (mat != root) {
-    const std::uint32_t above = parents[mat];
-    parents[mat] = root;
-    mat = above;
-  }
-  return root;
-}
-
-}  // namespace
-
 void Components::update(std::size_t mat_count, const std::vector<std::uint32_t>& ends,
                         const std::vector<bool>& acts) {
   CORDIS_ASSERT(ends.size() == 2 * acts.size());
-  std::vector<std::uint32_t> parents(mat_count);
-  std::iota(parents.begin(), parents.end(), 0u);
+  node::DisjointSets joined(mat_count);
   for (std::size_t link = 0; link < acts.size(); ++link) {
-    if (!acts[link]) continue;
-    const std::uint32_t a = root_of(parents, ends[2 * link]);
-    const std::uint32_t b = root_of(parents, ends[2 * link + 1]);
-    parents[std::max(a, b)] = std::min(a, b);
+    if (acts[link]) joined.join(ends[2 * link], ends[2 * link + 1]);
   }
   std::vector<std::size_t> sizes(mat_count, 0);
-  for (std::uint32_t mat = 0; mat < mat_count; ++mat) ++sizes[root_of(parents, mat)];
+  for (std::uint32_t mat = 0; mat < mat_count; ++mat) ++sizes[joined.root_of(mat)];
   std::vector<Component> found;
   for (std::uint32_t mat = 0; mat < mat_count; ++mat)
     if (sizes[mat] > 1) found.push_back({mat, sizes[mat], std::nullopt});
@@ -48,8 +28,7 @@ void Components::update(std::size_t mat_count, const std::vector<std::uint32_t>&
   list_ = std::move(found);
   colours_.assign(mat_count, std::nullopt);
   for (const Component& component : list_) colours_[component.root] = component.colour;
-  for (std::uint32_t mat = 0; mat < mat_count; ++mat)
-    colours_[mat] = colours_[root_of(parents, mat)];
+  for (std::uint32_t mat = 0; mat < mat_count; ++mat) colours_[mat] = colours_[joined.root_of(mat)];
 }
 
 void Components::give_colours(std::vector<Component>& found) const {

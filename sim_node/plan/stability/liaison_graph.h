@@ -25,6 +25,9 @@ struct Uncertainty {
   /// What the law of the liaison asks for and nothing bounds, where that is why: indices in
   /// NetworkDescription::variables.
   std::vector<std::uint32_t> variables = {};
+
+  /// True if what masses move comes in without a bound: no stiffness and no viscosity stands for that.
+  bool leaves_variables_free() const noexcept { return !variables.empty(); }
 };
 
 /// A liaison between two MATs with the largest slopes it can have.
