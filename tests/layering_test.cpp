@@ -62,8 +62,9 @@ bool begins_with_any(const std::string& text, const std::vector<std::string>& be
   return false;
 }
 
-/// What every folder may include: it includes nothing of Cordis itself.
-const std::vector<std::string> kEverywhere = {"node/assert.h", "node/cdr.h"};
+/// What every folder may include: it includes nothing of Cordis but what stands here.
+const std::vector<std::string> kEverywhere = {"node/assert.h", "node/cdr.h",
+                                              "node/disjoint_sets.h"};
 
 bool is_for_every_folder(const std::string& file) {
   return std::ranges::find(kEverywhere, file) != kEverywhere.end();
@@ -122,8 +123,9 @@ TEST(Layering, EveryIncludePointsToItsOwnLevelOrDownwards) {
   const std::vector<Include> includes = all_includes();
   ASSERT_GT(includes.size(), 100u) << "the tree was not found";
   for (const Include& include : includes) {
-    EXPECT_FALSE(include.quoted && is_for_every_folder(include.file)) << include.target;
     if (!include.quoted || is_for_every_folder(include.target)) continue;
+    EXPECT_FALSE(is_for_every_folder(include.file))
+        << include.file << " includes " << include.target;
     for (const auto& [folder, targets] : kAllowed) {
       if (!include.file.starts_with(folder)) continue;
       EXPECT_TRUE(begins_with_any(include.target, targets))
