@@ -17,6 +17,15 @@ std::string slides_text(const scene::Scene& scene, const plan::Settled& rest) {
   return ", which slides on " + scene::call_mat(scene, *rest.slides_on).name;
 }
 
+/// What may help a scene that is still pulled after all its steps.
+std::string hint_of(const scene::Scene& scene, const plan::Settled& rest) {
+  const std::string name = scene::call_mat(scene, rest.pulled).name;
+  const std::string larger = "write an until_n above " + short_text(rest.force);
+  if (rest.slides_on) return "let friction hold " + name + ", fix it, or " + larger;
+  if (rest.comes_nearer) return "it comes nearer to rest: write more steps, or " + larger;
+  return "hold " + name + " by a liaison or a surface, fix it, or " + larger;
+}
+
 /// True if contacts of the one are contacts of the other, with friction.
 bool has_same_contacts(const engine::NetworkDescription& settled,
                        const engine::NetworkDescription& network, std::size_t set) {
@@ -58,7 +67,7 @@ void settle(scene::Scene& scene, config::Problems& problems) {
                    "the scene has not come to rest in " + config::count_text(rest.steps, "step") +
                        ": " + short_text(rest.force) + " N pull " +
                        scene::call_mat(scene, rest.pulled).name + slides_text(scene, rest),
-                   "hold what falls or slides, or write a larger until_n or steps");
+                   hint_of(scene, rest));
     return;
   }
   scene::SettledStart moved;

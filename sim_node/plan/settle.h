@@ -21,9 +21,10 @@ struct Settled {
   std::vector<engine::Vec3> position;  ///< position of each MAT [m]
   /// What friction remembers there of the contacts of each set.
   std::vector<std::vector<engine::StartStretch>> stretches;
-  double force = 0.0;                      ///< the largest on a mass there [N]
-  std::uint32_t pulled = 0;                ///< the mass that has it
-  std::uint64_t steps = 0;                 ///< number of computed steps
+  double force = 0.0;         ///< the largest on a mass there [N]
+  std::uint32_t pulled = 0;   ///< the mass that has it
+  bool comes_nearer = false;  ///< half of the steps before, more than twice that pulled
+  std::uint64_t steps = 0;    ///< number of computed steps
   std::optional<std::uint32_t> slides_on;  ///< what the pulled mass slides on, if it does
   bool is_finite = true;                   ///< false: it diverged; the rest says nothing then
   bool is_rounding = false;                ///< what pulls falls no more, and is rounding

@@ -103,6 +103,9 @@ TEST(Settling, SaysWhatSlides) {
       << problems.text();
   EXPECT_NE(problems.text().find(" N pull block, which slides on slope\n"), std::string::npos)
       << problems.text();
+  EXPECT_NE(problems.text().find("hint: let friction hold block, fix it, or write an until_n"),
+            std::string::npos)
+      << problems.text();
 
   config::Problems smooth;
   scene_at_rest(block_on_a_slope(0.1, ", friction: false, steps: 500"), smooth);
@@ -126,7 +129,19 @@ TEST(Settling, RefusesWhatDoesNotComeToRest) {
             R"(t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]
 settle: {until_n: 1.0e-9, steps: 50}
         ^
-  hint: hold what falls or slides, or write a larger until_n or steps)");
+  hint: hold chain[0] by a liaison or a surface, fix it, or write an until_n above 0.1)");
+}
+
+TEST(Settling, SaysThatMoreStepsHelp) {
+  config::Problems few;
+  scene_at_rest(chain("settle: {until_n: 1.0e-9, steps: 60}"), few);
+  EXPECT_NE(few.text().find("hint: it comes nearer to rest: write more steps, or write an until_n"),
+            std::string::npos)
+      << few.text();
+
+  config::Problems enough;
+  scene_at_rest(chain("settle: {until_n: 1.0e-9, steps: 6000}"), enough);
+  EXPECT_EQ(enough.text(), "");
 }
 
 TEST(Settling, TellsWhatRoundingKeepsFromRest) {
