@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/limit_weights.h"
@@ -30,12 +32,15 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     return dt * dt * stiffness + 2.0 * dt * viscosity;
   };
   const plan::LimitWeights weights = plan::limit_weights(network, plan::Limit::kStable);
-  const plan::LiaisonGraph needed = plan::liaison_graph(network);
-  const plan::LiaisonGraph graph = plan::weighted(needed, weights);
+  plan::LiaisonGraph graph = plan::liaison_graph(network);
+  std::vector<plan::PartnerLimit> partners;
+  if (!network.sets.empty()) partners = plan::partner_limits(network, graph, false);
+  graph = plan::weighted(std::move(graph), weights);
   // The weights with which the largest numbers of partners are certified.
-  const plan::LiaisonGraph fullest =
-      plan::with_certified_partners(graph, plan::partner_limits(network, needed, false));
-  const std::vector<double> weight = plan::row_weights(fullest, dt).weight;
+  const std::vector<double> weight =
+      partners.empty()
+          ? plan::row_weights(graph, dt).weight
+          : plan::row_weights(plan::with_certified_partners(graph, partners), dt).weight;
   for (std::size_t i = 0; i < share_.size(); ++i) {
     if (weight[i] > 0.0) share_[i] = graph.inverse_mass[i] / weight[i];
     steady_[i] = number(0.0, graph.medium_viscosity[i]) * weight[i];

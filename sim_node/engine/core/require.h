@@ -7,9 +7,11 @@
 
 namespace cordis::engine {
 
+/// What becomes a string is made one where the condition fails.
 /// @throws std::invalid_argument "`what` must be `expected`" unless the condition holds.
-inline void require(bool condition, const std::string& what, const char* expected) {
-  if (!condition) throw std::invalid_argument(what + " must be " + expected);
+template <class What>
+void require(bool condition, const What& what, const char* expected) {
+  if (!condition) throw std::invalid_argument(std::string(what) + " must be " + expected);
 }
 
 inline bool is_finite_and_at_least_zero(double value) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,12 +26,30 @@ bool stays_within(const Vec3& value, int dimension) {
   return true;
 }
 
-void require_vector(const Vec3& value, int dimension, const std::string& what) {
+/// "link 7", or a part of it: "link 7: stiffness". Of a million links none has its name made while all are right.
+struct ItemName {
+  const char* kind;
+  std::size_t index;
+  const char* part = "";
+  std::optional<std::uint32_t> number{};  // behind the part
+
+  ItemName operator+(const char* of_it) const { return {kind, index, of_it}; }
+  /// Of a MAT that belongs to it.
+  ItemName mat(std::uint32_t mat) const { return {kind, index, ": MAT ", mat}; }
+  explicit operator std::string() const {
+    std::string text = kind;
+    text += ' ' + std::to_string(index) + part;
+    return number ? text + std::to_string(*number) : text;
+  }
+};
+
+template <class What>
+void require_vector(const Vec3& value, int dimension, const What& what) {
   require(value.allFinite(), what, "finite");
   require(stays_within(value, dimension), what, "0 beyond the dimension of the network");
 }
 
-void check_mat(const NetworkDescription& description, const Mat& mat, const std::string& name) {
+void check_mat(const NetworkDescription& description, const Mat& mat, const ItemName& name) {
   require_vector(mat.position, description.dimension, name + ": position");
   require_vector(mat.velocity, description.dimension, name + ": velocity");
   if (mat.kind != MatKind::kMass) {
@@ -46,14 +65,14 @@ void check_mat(const NetworkDescription& description, const Mat& mat, const std:
 }
 
 template <class Edge>
-void check_ends(const NetworkDescription& description, const Edge& link, const std::string& name) {
+void check_ends(const NetworkDescription& description, const Edge& link, const ItemName& name) {
   const std::size_t mat_count = description.mats.size();
   require(link.mat_a < mat_count && link.mat_b < mat_count, name + ": both ends",
           "MATs of the network");
   require(link.mat_a != link.mat_b, name + ": its ends", "two different MATs");
 }
 
-void check_link(const NetworkDescription& description, const Link& link, const std::string& name) {
+void check_link(const NetworkDescription& description, const Link& link, const ItemName& name) {
   check_ends(description, link, name);
   require(is_finite_and_at_least_zero(link.stiffness), name + ": stiffness", "finite and >= 0");
   require(is_finite_and_at_least_zero(link.viscosity), name + ": viscosity", "finite and >= 0");
@@ -67,7 +86,7 @@ void check_link(const NetworkDescription& description, const Link& link, const s
 }
 
 void check_states(const NetworkDescription& description, std::uint32_t state_machine,
-                  const std::string& name) {
+                  const ItemName& name) {
   require(state_machine < description.state_machines.size(), name + ": state machine",
           "one of the network");
   for (const LinkState& state : description.state_machines[state_machine].states) {
@@ -82,7 +101,7 @@ void check_states(const NetworkDescription& description, std::uint32_t state_mac
 }
 
 void check_state_link(const NetworkDescription& description, const StateLink& link,
-                      const std::string& name) {
+                      const ItemName& name) {
   check_ends(description, link, name);
   check_states(description, link.state_machine, name);
   require(std::isfinite(link.rest_length), name + ": rest length", "finite");
@@ -91,7 +110,7 @@ void check_state_link(const NetworkDescription& description, const StateLink& li
 }
 
 void check_maxwell_link(const NetworkDescription& description, const MaxwellLink& link,
-                        const std::string& name) {
+                        const ItemName& name) {
   check_ends(description, link, name);
   require(std::isfinite(link.start_force), name + ": start force", "finite");
   if (link.follows_variables()) {
@@ -112,7 +131,7 @@ void check_maxwell_link(const NetworkDescription& description, const MaxwellLink
 }
 
 void check_bend_states(const NetworkDescription& description, const Bend& bend,
-                       const std::string& name) {
+                       const ItemName& name) {
   require(bend.state_machine < description.state_machines.size(), name + ": state machine",
           "one of the network");
   require(bend.stiffness == 0.0 && bend.viscosity == 0.0, name + ": stiffness and viscosity",
@@ -136,7 +155,7 @@ void check_bend_states(const NetworkDescription& description, const Bend& bend,
     require(exit.rest == RestRule::kKeep, name + ": rest angle", "kept in 3 dimensions");
 }
 
-void check_bend(const NetworkDescription& description, const Bend& bend, const std::string& name) {
+void check_bend(const NetworkDescription& description, const Bend& bend, const ItemName& name) {
   for (const std::uint32_t mat : {bend.mat_a, bend.mat_b, bend.mat_c}) {
     require(mat < description.mats.size(), name + ": each MAT", "one of the network");
   }
@@ -157,7 +176,7 @@ void check_bend(const NetworkDescription& description, const Bend& bend, const s
 }
 
 void check_surface(const NetworkDescription& description, const Surface& surface,
-                   const std::string& name) {
+                   const ItemName& name) {
   constexpr double kRounding = 1e-9;
   require(surface.mat < description.mats.size(), name + ": its MAT", "one of the network");
   const MatKind kind = description.mats[surface.mat].kind;
@@ -214,7 +233,7 @@ void check_surface(const NetworkDescription& description, const Surface& surface
 }
 
 void check_surfaces_of(const NetworkDescription& description, const SetLiaison& set,
-                       const std::string& name) {
+                       const ItemName& name) {
   if (description.surfaces.empty()) return;
   std::vector<bool> has_shape(description.mats.size(), false);
   for (const Surface& surface : description.surfaces) has_shape[surface.mat] = true;
@@ -228,7 +247,7 @@ void check_surfaces_of(const NetworkDescription& description, const SetLiaison& 
 }
 
 void check_start_stretches(const NetworkDescription& description, const SetLiaison& set,
-                           const std::string& name) {
+                           const ItemName& name) {
   if (set.stretches.empty()) return;
   require(rubs(description.state_machines[set.state_machine]), name + ": its start stretches",
           "left out without friction");
@@ -247,8 +266,7 @@ void check_start_stretches(const NetworkDescription& description, const SetLiais
   }
 }
 
-void check_set(const NetworkDescription& description, const SetLiaison& set,
-               const std::string& name) {
+void check_set(const NetworkDescription& description, const SetLiaison& set, const ItemName& name) {
   check_states(description, set.state_machine, name);
   require(description.dimension > 1 || !rubs(description.state_machines[set.state_machine]),
           name + ": friction", "left out in 1 dimension, which has no direction to slide in");
@@ -261,7 +279,7 @@ void check_set(const NetworkDescription& description, const SetLiaison& set,
   for (const std::vector<std::uint32_t>* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
       require(mat < taken.size(), name + ": each member", "a MAT of the network");
-      require(!taken[mat], name + ": MAT " + std::to_string(mat), "in one set, once");
+      require(!taken[mat], name.mat(mat), "in one set, once");
       taken[mat] = true;
     }
   }
@@ -284,7 +302,7 @@ std::size_t count_of(const NetworkDescription& description, LinkKind kind) {
 }
 
 void check_group(const NetworkDescription& description, const VariableGroup& group,
-                 const std::string& name) {
+                 const ItemName& name) {
   std::size_t count = description.mats.size();
   if (group.is_of_links) {
     count = count_of(description, group.kind);
@@ -298,14 +316,14 @@ void check_group(const NetworkDescription& description, const VariableGroup& gro
 }
 
 void check_contact(const NetworkDescription& description, const ContactOfGroups& contact,
-                   const std::string& name) {
+                   const ItemName& name) {
   std::vector<bool> taken(description.mats.size(), false);
   for (const std::uint32_t index : {contact.on, contact.by}) {
     const bool is_of_mats =
         index < description.groups.size() && !description.groups[index].is_of_links;
     require(is_of_mats, name + ": each of its groups", "one of MATs");
     for (const std::uint32_t mat : description.groups[index].members) {
-      require(!taken[mat], name + ": MAT " + std::to_string(mat), "in one of its groups");
+      require(!taken[mat], name.mat(mat), "in one of its groups");
       taken[mat] = true;
     }
   }
@@ -313,7 +331,7 @@ void check_contact(const NetworkDescription& description, const ContactOfGroups&
 
 /// Precondition: the group exists.
 void check_group_of(const NetworkDescription& description, const Variable& variable,
-                    const std::string& name) {
+                    const ItemName& name) {
   const VariableGroup& group = description.groups[variable.index];
   const bool fits = group.is_of_links ? is_of_link(variable.quantity) && group.kind == variable.kind
                                       : !is_of_link(variable.quantity);
@@ -327,7 +345,7 @@ void check_group_of(const NetworkDescription& description, const Variable& varia
 }
 
 void check_link_of(const NetworkDescription& description, const Variable& variable,
-                   const std::string& name) {
+                   const ItemName& name) {
   const bool is_of_bend = variable.kind == LinkKind::kBend;
   const bool asks_for_state =
       variable.quantity == VariableKind::kState || variable.quantity == VariableKind::kAge;
@@ -349,7 +367,7 @@ void check_link_of(const NetworkDescription& description, const Variable& variab
 }
 
 void check_variable(const NetworkDescription& description, const Variable& variable,
-                    const std::string& name) {
+                    const ItemName& name) {
   const auto list_size = [&] {
     if (is_of_group(variable)) return description.groups.size();
     if (variable.quantity == VariableKind::kContactForce) return description.contacts.size();
@@ -374,7 +392,7 @@ template <class Item, class Check>
 void check_each(const NetworkDescription& description, const std::vector<Item>& items,
                 const char* kind, Check check_one) {
   for (std::size_t i = 0; i < items.size(); ++i) {
-    check_one(description, items[i], kind + (' ' + std::to_string(i)));
+    check_one(description, items[i], ItemName{kind, i});
   }
 }
 
@@ -382,14 +400,18 @@ void check_balls(const NetworkDescription& description) {
   require(description.radius.empty() || description.radius.size() == description.mats.size(),
           "number of radii", "0 or that of the MATs");
   for (std::size_t i = 0; i < description.radius.size(); ++i) {
-    require(is_finite_and_at_least_zero(description.radius[i]),
-            "MAT " + std::to_string(i) + ": radius", "finite and >= 0");
+    require(is_finite_and_at_least_zero(description.radius[i]), ItemName{"MAT", i} + ": radius",
+            "finite and >= 0");
   }
 }
 
 void check_drives(const NetworkDescription& description) {
-  check_each(description, description.time_functions, "time function", check_time_function);
-  check_each(description, description.drives, "drive", check_drive);
+  for (std::size_t i = 0; i < description.time_functions.size(); ++i) {
+    check_time_function(description, description.time_functions[i],
+                        std::string(ItemName{"time function", i}));
+  }
+  for (std::size_t i = 0; i < description.drives.size(); ++i)
+    check_drive(description, description.drives[i], std::string(ItemName{"drive", i}));
   for (std::size_t i = 1; i < description.drives.size(); ++i) {
     const Drive& before = description.drives[i - 1];
     const Drive& drive = description.drives[i];

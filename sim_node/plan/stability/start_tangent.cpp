@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 
@@ -44,55 +47,78 @@ struct Direction {
   Columns image;
 };
 
-/// Takes from `direction` what lies along `unit`.
-void make_orthogonal(Direction& direction, const Direction& unit) {
-  const double share = dot(direction.value, unit.value);
-  direction.value -= share * unit.value;
-  direction.image -= share * unit.image;
+/// Products of some directions with each other: one pass over all of them, for those of a large network are far
+/// larger than the caches.
+struct Products {
+  Eigen::Matrix3d of_values = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d with_images = Eigen::Matrix3d::Zero();
+};
+
+Products products_of(const std::vector<const Direction*>& directions) {
+  constexpr Eigen::Index kBlock = 256;  // columns, so that the sums are of parts alike in size
+  const std::size_t count = directions.size();
+  const Eigen::Index columns = directions.front()->value.cols();
+  Products all;
+  for (Eigen::Index first = 0; first < columns; first += kBlock) {
+    const Eigen::Index block = std::min(kBlock, columns - first);
+    const auto part = [&](const Columns& matrix) { return matrix.middleCols(first, block); };
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto value = part(directions[i]->value);
+      for (std::size_t j = 0; j < count; ++j) {
+        const auto [row, column] =
+            std::pair(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        all.with_images(row, column) += value.cwiseProduct(part(directions[j]->image)).sum();
+        if (j >= i)
+          all.of_values(row, column) += value.cwiseProduct(part(directions[j]->value)).sum();
+      }
+    }
+  }
+  all.of_values = all.of_values.selfadjointView<Eigen::Upper>();
+  all.with_images = 0.5 * (all.with_images + all.with_images.transpose()).eval();
+  return all;
 }
 
-/// @return false when nothing is left of it
-bool normalise(Direction& direction) {
-  const double length = direction.value.norm();
-  constexpr double kNothing = 1e-150;
-  if (!(length > kNothing)) return false;
-  direction.value /= length;
-  direction.image /= length;
-  return true;
+/// The coefficients of the best combination of the first `count` directions, of unit length, or nothing where
+/// these hardly differ from each other.
+std::optional<Eigen::VectorXd> best_of(const Products& products, Eigen::Index count) {
+  constexpr double kAlike = 1e-6;  // of the squares of their lengths
+  const Eigen::VectorXd length = products.of_values.diagonal().head(count).cwiseSqrt();
+  if (!(length.minCoeff() > 0.0)) return {};
+  const Eigen::VectorXd scale = length.cwiseInverse();
+  const auto scaled = [&](const Eigen::Matrix3d& matrix) -> Eigen::MatrixXd {
+    return scale.asDiagonal() * matrix.topLeftCorner(count, count) * scale.asDiagonal();
+  };
+  const Eigen::MatrixXd values = scaled(products.of_values);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> differ(values, Eigen::EigenvaluesOnly);
+  if (!(differ.eigenvalues()[0] > kAlike)) return {};
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      scaled(products.with_images), values);
+  return scale.asDiagonal() * solver.eigenvectors().col(count - 1);
 }
 
 /// Makes `present` the best in the space of itself and the two others (Rayleigh, Ritz).
-/// @return the part of it that was not in `present`
-Direction improve(Direction& present, Direction uphill, Direction last) {
-  std::vector<Direction> base;
-  base.reserve(3);
-  base.push_back(present);
-  for (Direction* next : {&uphill, &last}) {
-    if (next->value.size() == 0) continue;
-    for (int twice = 0; twice < 2; ++twice) {
-      for (const Direction& unit : base) make_orthogonal(*next, unit);
+/// @param last  becomes the part of it that was not in `present`; at first it is empty
+void improve(Direction& present, const Direction& uphill, Direction& last) {
+  std::vector<const Direction*> base = {&present, &uphill};
+  if (last.value.size() > 0) base.push_back(&last);
+  const Products products = products_of(base);
+  auto count = static_cast<Eigen::Index>(base.size());
+  std::optional<Eigen::VectorXd> best = best_of(products, count);
+  if (!best && count > 2) best = best_of(products, count = 2);
+  if (!best) return;
+  const double of_present = (*best)[0];
+  const double of_uphill = (*best)[1];
+  const double of_last = count > 2 ? (*best)[2] : 0.0;
+  if (last.value.size() == 0)
+    last = {Columns::Zero(3, present.value.cols()), Columns::Zero(3, present.value.cols())};
+  const auto move = [&](Columns& now, const Columns& up, Columns& before) {
+    for (Eigen::Index i = 0; i < now.size(); ++i) {
+      before.data()[i] = of_uphill * up.data()[i] + of_last * before.data()[i];
+      now.data()[i] = of_present * now.data()[i] + before.data()[i];
     }
-    if (normalise(*next)) base.push_back(std::move(*next));
-  }
-  const auto count = static_cast<Eigen::Index>(base.size());
-  Eigen::MatrixXd small(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < count; ++j) {
-      small(i, j) =
-          dot(base[static_cast<std::size_t>(i)].value, base[static_cast<std::size_t>(j)].image);
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (small + small.transpose()));
-  const Eigen::VectorXd best = solver.eigenvectors().col(count - 1);
-  Direction moved{Columns::Zero(3, present.value.cols()), Columns::Zero(3, present.value.cols())};
-  for (Eigen::Index i = 1; i < count; ++i) {
-    moved.value += best[i] * base[static_cast<std::size_t>(i)].value;
-    moved.image += best[i] * base[static_cast<std::size_t>(i)].image;
-  }
-  present.value = best[0] * present.value + moved.value;
-  present.image = best[0] * present.image + moved.image;
-  normalise(present);
-  return moved;
+  };
+  move(present.value, uphill.value, last.value);
+  move(present.image, uphill.image, last.image);
 }
 
 /// A direction of unit length, the same each time; 0 for a MAT that is no mass.
@@ -265,8 +291,16 @@ void StartTangent::add_vector_spring(const engine::Link& link, double stiffness,
 
 StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_factor,
                                           double viscosity_factor, double step) const {
-  const Columns moved = x * root_of_inverse_mass_.asDiagonal();
-  Columns forces = viscosity_factor * moved * medium_viscosity_.asDiagonal();
+  Columns moved;
+  Columns forces;
+  multiply(x, stiffness_factor, viscosity_factor, step, moved, forces);
+  return forces;
+}
+
+void StartTangent::multiply(const Columns& x, double stiffness_factor, double viscosity_factor,
+                            double step, Columns& moved, Columns& forces) const {
+  moved.noalias() = x * root_of_inverse_mass_.asDiagonal();
+  forces = moved.array().rowwise() * (viscosity_factor * medium_viscosity_.array());
   for (const Part& part : parts_) {
     const Eigen::Vector3d apart = moved.col(part.mat_b) - moved.col(part.mat_a);
     double along = part.along;
@@ -295,25 +329,27 @@ StartTangent::Columns StartTangent::times(const Columns& x, double stiffness_fac
     forces.col(bend.mat_c) -= on_c;
     forces.col(bend.mat_b) += on_a + on_c;
   }
-  return forces * root_of_inverse_mass_.asDiagonal();
+  forces.array().rowwise() *= root_of_inverse_mass_.array();
 }
 
 int StartTangent::climb(Columns& x, double step, int max_iterations) const {
-  const auto image = [&](const Columns& value) {
-    return times(value, step * step, 2.0 * step, step);
+  Columns moved;
+  const auto find_image = [&](Direction& direction) {
+    multiply(direction.value, step * step, 2.0 * step, step, moved, direction.image);
   };
-  Direction present{x, image(x)};
+  Direction present{x, {}};
+  find_image(present);
   Direction last;
+  Direction uphill;
   double value = dot(present.value, present.image);
   double gain = 0.0;  // of the last iterations, fading
   int n = 0;
   while (n < max_iterations) {
     ++n;
-    Direction uphill{present.image - value * present.value, {}};
+    uphill.value = present.image - value * present.value;
     if (!(uphill.value.norm() > kFlat * std::abs(value))) break;
-    uphill.value.normalize();
-    uphill.image = image(uphill.value);
-    last = improve(present, std::move(uphill), std::move(last));
+    find_image(uphill);
+    improve(present, uphill, last);
     const double reached = dot(present.value, present.image);
     gain = std::max(0.5 * gain, reached - value);
     value = reached;

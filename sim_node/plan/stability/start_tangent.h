@@ -70,6 +70,10 @@ class StartTangent {
   /// M^-1/2 (stiffness_factor K + viscosity_factor Z) M^-1/2 x; Maxwell elements as at a step.
   Columns times(const Columns& x, double stiffness_factor, double viscosity_factor,
                 double step) const;
+  /// Likewise, into columns that keep their memory.
+  /// @param moved  room for M^-1/2 x
+  void multiply(const Columns& x, double stiffness_factor, double viscosity_factor, double step,
+                Columns& moved, Columns& forces) const;
   /// The step at which one direction diverges [s]; infinite: none. Maxwell elements as at a step.
   double diverging_step_of(const Columns& x, double maxwell_step) const;
   /// Goes from a direction that diverges at no step to one that does, if it finds one: towards the largest

@@ -20,9 +20,10 @@ struct Rows {
   std::vector<double> viscosity;
 };
 
-/// (D + A) x: all entries of the matrix taken as positive.
-Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
-  Rows rows{std::vector<double>(x.size(), 0.0), std::vector<double>(x.size(), 0.0)};
+/// (D + A) x: all entries of the matrix taken as positive. The rows keep their memory.
+void multiply(const LiaisonGraph& graph, const std::vector<double>& x, Rows& rows) {
+  rows.stiffness.assign(x.size(), 0.0);
+  rows.viscosity.assign(x.size(), 0.0);
   for (const Edge& edge : graph.edges) {
     const double sum = x[edge.mat_a] + x[edge.mat_b];
     for (const std::uint32_t mat : {edge.mat_a, edge.mat_b}) {
@@ -44,7 +45,6 @@ Rows times(const LiaisonGraph& graph, const std::vector<double>& x) {
     rows.viscosity[force.mat] += force.viscosity * x[force.mat];
   }
   for (std::size_t i = 0; i < x.size(); ++i) rows.viscosity[i] += graph.medium_viscosity[i] * x[i];
-  return rows;
 }
 
 /// The strongest liaison at a mass, at this step.
@@ -83,10 +83,12 @@ void take_smaller(StepBound& bound, double step, std::uint32_t mat) {
 /// The row bound of a positive vector: the smallest of the steps of all rows. After some iterations
 /// the rows of all that hangs together are nearly alike; the mass is that of them which has the
 /// largest part of the kinetic energy.
-StepBound row_bound(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows) {
+/// @param steps  room for those of the rows
+StepBound row_bound(const LiaisonGraph& graph, const std::vector<double>& x, const Rows& rows,
+                    std::vector<double>& steps) {
   constexpr double kAlike = 1.01;
   StepBound bound;
-  std::vector<double> steps(x.size(), std::numeric_limits<double>::infinity());
+  steps.assign(x.size(), std::numeric_limits<double>::infinity());
   for (std::uint32_t i = 0; i < x.size(); ++i) {
     if (x[i] <= 0.0) continue;
     const double per_mass = graph.inverse_mass[i] / x[i];
@@ -123,6 +125,7 @@ void iterate(const LiaisonGraph& graph, const Rows& rows, double step, std::vect
 
 std::vector<double> first_weights(const LiaisonGraph& graph) {
   std::vector<double> x;
+  x.reserve(graph.inverse_mass.size());
   for (const double inverse_mass : graph.inverse_mass) x.push_back(std::sqrt(inverse_mass));
   return x;
 }
@@ -143,9 +146,11 @@ StepBound bound_at(const LiaisonGraph& graph) {
   StepBound best = edge_bound(graph);
   if (!std::isfinite(best.step)) return best;
   std::vector<double> x = first_weights(graph);
+  std::vector<double> steps;
+  Rows rows;
   for (int n = 0; n < kRowBounds; ++n) {
-    const Rows rows = times(graph, x);
-    const StepBound bound = row_bound(graph, x, rows);
+    multiply(graph, x, rows);
+    const StepBound bound = row_bound(graph, x, rows, steps);
     if (bound.step > best.step) best = bound;
     iterate(graph, rows, best.step, x);
   }
@@ -162,8 +167,9 @@ double limit_step(double stiffness, double viscosity) noexcept {
 RowWeights row_weights(const LiaisonGraph& graph, double step, double enough) {
   std::vector<double> x = first_weights(graph);
   RowWeights best{x, std::numeric_limits<double>::infinity()};
+  Rows rows;
   for (int n = 0; n < kRowBounds && !(best.number < enough); ++n) {
-    const Rows rows = times(graph, x);
+    multiply(graph, x, rows);
     const double number = row_number(graph, x, rows, step);
     if (number < best.number) best = {x, number};
     iterate(graph, rows, step, x);
@@ -174,7 +180,8 @@ RowWeights row_weights(const LiaisonGraph& graph, double step, double enough) {
 StepBound edge_bound(const LiaisonGraph& graph) {
   // If x = 1/2, the rows of edges and contact bounds are the sums d of their slopes.
   const std::size_t count = graph.inverse_mass.size();
-  Rows sums = times(graph, std::vector<double>(count, 0.5));
+  Rows sums;
+  multiply(graph, std::vector<double>(count, 0.5), sums);
   for (const ForceBound& force : graph.forces) {  // they have one end, of which that was half
     sums.stiffness[force.mat] += 0.5 * force.stiffness;
     sums.viscosity[force.mat] += 0.5 * force.viscosity;
