@@ -450,7 +450,7 @@ std::string freezing_text(double tolerance) {
   if (tolerance == 0.0) return {};
   return fmt::format(
       "frozen      what rests within {:.2g} m: at rest, positions off by at most {:.2g} m;\n"
-      "            more on the way, where much moves slowly together\n",
+      "            more while much moves or creeps slowly together\n",
       tolerance, kLargestError * tolerance);
 }
 

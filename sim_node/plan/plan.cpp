@@ -81,8 +81,18 @@ std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& net
 /// Step beyond which the tangent at the start diverges [s].
 double diverging_step_of(const engine::NetworkDescription& network) {
   const auto limit_at = [](const engine::NetworkDescription& varied) {
-    if (friction_beside_dampers(varied)) return std::numeric_limits<double>::infinity();
-    return StartTangent(varied).diverging_step();
+    constexpr int kMaxRounds = 16;
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    if (friction_beside_dampers(varied)) return kEndless;
+    // At a longer step more of what `leapfrog` solves holds.
+    double step = varied.step;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const double limit = StartTangent(varied, step).diverging_step();
+      if (!(limit > step) || !engine::solves_stiff_friction(varied)) return limit;
+      if (!std::isfinite(limit)) return limit;
+      step = limit;
+    }
+    return kEndless;
   };
   return limit_of_all_steps(network, limit_at);
 }

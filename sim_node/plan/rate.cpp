@@ -64,6 +64,37 @@ double creep_tolerance(const BandEdge& edge, const AccuracyTarget& target) {
   return tolerance_of_rate(w * w / (rate + std::sqrt(rate * rate - w * w)), target);
 }
 
+/// True if anything but fixed points and masses is fastened to the modes of a network.
+bool loads_modes(const engine::NetworkDescription& network, const LiaisonGraph& graph) {
+  const auto is_port = [&network](std::uint32_t mat) {
+    return network.mats[mat].kind == engine::MatKind::kPort;
+  };
+  return !graph.contacts.empty() || std::ranges::any_of(graph.edges, [&](const Edge& edge) {
+    return edge.liaison.kind != LiaisonKind::kLink || is_port(edge.mat_a) || is_port(edge.mat_b);
+  });
+}
+
+/// The longest step [s] that modes are certified at, with what is fastened to them, of the multiples of a rate.
+/// Each step has modes of its own.
+double longest_modal_step(engine::NetworkDescription network, double gesture_rate_hz,
+                          double highest_hz) {
+  const auto is_certified = [&](double multiple) {
+    network.step = 1.0 / (multiple * gesture_rate_hz);
+    const Stability stability = stability_of(network, liaison_graph(network));
+    return kPartOfTheCertifiedStep * stability.certified.step >= network.step;
+  };
+  double high = 1.0;
+  for (; !is_certified(high); high *= 2.0) {
+    if (high * gesture_rate_hz > highest_hz) return network.step;
+  }
+  double low = 0.5 * high;
+  while (high - low > 1.0) {
+    const double middle = std::floor(0.5 * (low + high));
+    (is_certified(middle) ? high : low) = middle;
+  }
+  return 1.0 / (high * gesture_rate_hz);
+}
+
 }  // namespace
 
 double multiple_from(double rate_hz, double unit_hz) noexcept {
@@ -84,8 +115,13 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
     step = largest;
     formula.reason = reason;
   };
-  consider(kPartOfTheCertifiedStep * certified_bound(per_gesture, graph).step,
-           RateReason::kStability);
+  if (network.integrator != engine::IntegratorKind::kModal) {
+    consider(kPartOfTheCertifiedStep * certified_bound(per_gesture, graph).step,
+             RateReason::kStability);
+  } else if (loads_modes(per_gesture, graph)) {
+    consider(longest_modal_step(per_gesture, gesture_rate_hz, target.highest_hz),
+             RateReason::kStability);
+  }
   if (const auto contact = worst_contact_of(per_gesture, graph)) {
     const double most = 4.0 * target.contact_energy / (1.0 + target.contact_energy);
     consider(per_gesture.step * std::sqrt(most / contact->stiffness), RateReason::kContact);

@@ -38,24 +38,69 @@ NetworkDescription one_mass(const LinkState& state, double v0, double step) {
   return scene;
 }
 
-TEST(StiffFriction, FollowTheRecurrenceOfTheCentredDamper) {
-  // (1 + Z'/2) x+ = (2 - K') x - (1 - Z'/2) x-, m = 1 and dt = 1
+/// (1 + p Z') x+ = (2 - K' + (2 p - 1) Z') x - (1 - (1 - p) Z') x-, m = 1 and dt = 1; p is 1/2 up to Z' = 2, and
+/// there on 1 - 1 / Z'.
+class DamperOfALink : public testing::TestWithParam<double> {};
+
+TEST_P(DamperOfALink, IsTakenLaterTheHeavierItIs) {
   constexpr double kStiffness = 1.0;
-  constexpr double kViscosity = 5.0;
+  const double viscosity = GetParam();
+  const double part = viscosity > 2.0 ? 1.0 - 1.0 / viscosity : 0.5;
   LinkState state;
   state.stiffness = kStiffness;
-  state.viscosity = kViscosity;
+  state.viscosity = viscosity;
   World world = make_world(one_mass(state, 0.0, 1.0));
   run(world, 1);
   double before = 1.0;
   double now = world.position(1).x();
   for (int n = 1; n < 200; ++n) {
-    const double next =
-        ((2.0 - kStiffness) * now - (1.0 - 0.5 * kViscosity) * before) / (1.0 + 0.5 * kViscosity);
+    const double next = ((2.0 - kStiffness + (2.0 * part - 1.0) * viscosity) * now -
+                         (1.0 - (1.0 - part) * viscosity) * before) /
+                        (1.0 + part * viscosity);
     world.step();
-    ASSERT_NEAR(world.position(1).x(), next, 1e-13) << n;
+    ASSERT_NEAR(world.position(1).x(), next, 1e-8) << n;
     before = now;
     now = next;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(StiffFriction, DamperOfALink, testing::Values(0.5, 1.9, 2.1, 5.0, 300.0));
+
+/// A block on dry friction, thrown or pushed: it comes to rest, and the friction is the push.
+TEST(StiffFriction, OfADryContactEndsAllMotion) {
+  constexpr double kStep = 1e-3;
+  constexpr double kFriction = 5.3;
+  for (const double push : {0.0, 3.0, -5.0}) {
+    for (const double speed : {1.0, 0.0106, 0.005, 1e-6}) {
+      for (const double medium : {0.0, 0.5}) {
+        NetworkDescription scene =
+            one_mass(with_friction(power_of_speed(kFriction, 0.0)), speed, kStep);
+        scene.medium_viscosity = medium;
+        World world = make_world(scene);
+        world.set_external_force(1, Vec3(push, 0.0, 0.0));
+        run(world, 4000);  // 0.3 N are left to stop 1 m/s
+        for (int n = 0; n < 20; ++n) {
+          world.step();
+          ASSERT_NEAR(world.velocity(1).x(), 0.0, 1e-9) << push << ' ' << speed << ' ' << medium;
+          ASSERT_NEAR(world.tension_of(0), push, 1e-6) << push << ' ' << speed;
+        }
+      }
+    }
+  }
+}
+
+/// It is carried along by a belt, and by one under a spring up to where that is stronger.
+TEST(StiffFriction, OfADryContactCarriesWithoutRinging) {
+  NetworkDescription scene = one_mass(with_friction(power_of_speed(5.0, 0.0)), 0.0, 1e-3);
+  scene.mats[0].kind = engine::MatKind::kPort;
+  World world = make_world(scene);
+  for (int n = 0; n < 500; ++n) {
+    world.impose_position(0, Vec3(0.2e-3 * n, 0.0, 0.0));
+    world.step();
+    if (n > 100) {
+      ASSERT_NEAR(world.velocity(1).x(), 0.2, 1e-6) << n;
+      ASSERT_NEAR(world.tension_of(0), 0.0, 1e-3) << n;
+    }
   }
 }
 

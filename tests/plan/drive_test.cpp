@@ -85,6 +85,21 @@ TEST(DrivenPlan, KnowsShortAndPeriodicFunctions) {
   }
 }
 
+/// A jump is as fast as a step makes it, and a quick slide as fast as it is, whenever they come.
+TEST(DrivenPlan, KnowsJumpsAndQuickSlides) {
+  NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
+  for (const double step : {5e-5, 1e-3}) {
+    scene.step = step;
+    for (const double moment : {0.30001, 7.77, 42.0}) {
+      const Term since = q(Quantity::kAge) + Term(-moment);
+      engine::TimeFunction jump;
+      jump.formula[0] = (Term(0.05) * one(Operation::kSign, since)).program;
+      scene.time_functions = {jump};
+      EXPECT_NEAR(plan::largest_drive_speed(scene), 0.1 / step, 0.05 / step) << moment;
+    }
+  }
+}
+
 TEST(DrivenPlan, AddsTheForcesOfAllMasses) {
   NetworkDescription scene = row_between(true, engine::IntegratorKind::kCordis);
   engine::TimeFunction push;

@@ -53,7 +53,7 @@ TEST(IntegratorLimit, OfFrictionSolvedBesideDampersIsNotCertain) {
     double viscosity;
     bool diverges;
   };
-  for (const Case& one : {Case{3.0, 0.0, true}, Case{6.0, 5.0, false}}) {
+  for (const Case& one : {Case{3.0, 0.0, false}, Case{25.0, 0.0, true}, Case{6.0, 5.0, false}}) {
     NetworkDescription scene = oscillator(1.0, one.stiffness, one.viscosity, 1.0, 0.0, 1.0);
     scene.integrator = IntegratorKind::kLeapfrog;
     scene.mats.push_back(mass(1.0, Vec3(2.0, 0, 0)));  // has a heavy damper in both cases
@@ -156,7 +156,7 @@ TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
   scene.integrator = IntegratorKind::kLeapfrog;
   scene.links.clear();
   scene.state_machines = {state_machine(100.0)};
-  scene.state_machines[0].states[0].viscosity = 200.0;  // extrapolated up to 1.5 ms
+  scene.state_machines[0].states[0].viscosity = 8.0;  // extrapolated up to 38 ms
   scene.state_links = {{0, 1, 0, 0.0}};
   const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
   EXPECT_NEAR(stability.certified.step, 0.2, 1e-9);
@@ -165,6 +165,24 @@ TEST(IntegratorLimit, OfLeapfrogOnLinksItSolvesIsTheirStiffness) {
   scene.step = 0.99 * 0.2;
   EXPECT_LT(largest_excursion(scene, 3000), 10.0);
   scene.step = 1.01 * 0.2;
+  EXPECT_GT(largest_excursion(scene, 20000), 1e6);
+}
+
+/// K' = 2 Z' at 4 s.
+TEST(IntegratorLimit, OfLeapfrogOnHeavyLinksItSolvesIsBeyondTheirStiffness) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1e-6);
+  scene.integrator = IntegratorKind::kLeapfrog;
+  scene.links.clear();
+  scene.state_machines = {state_machine(100.0)};
+  scene.state_machines[0].states[0].viscosity = 200.0;
+  scene.state_links = {{0, 1, 0, 0.0}};
+  const plan::Stability stability = plan::stability_of(scene, plan::liaison_graph(scene));
+  EXPECT_NEAR(stability.certified.step, 0.2, 1e-9);
+  EXPECT_TRUE(std::isinf(stability.diverging_step));
+
+  scene.step = 3.9;
+  EXPECT_LT(largest_excursion(scene, 3000), 100.0);
+  scene.step = 4.1;
   EXPECT_GT(largest_excursion(scene, 20000), 1e6);
   scene.integrator = IntegratorKind::kCordis;
   scene.step = 1e-6;

@@ -130,5 +130,37 @@ TEST(SettledRate, MeetsThePulsesOfTables) {
   }
 }
 
+/// What is fastened to modes asks for a rate of its own, whichever integrator is taken in the end.
+TEST(SettledRate, IsStableWithDampersOfDrivenMatterAtModes) {
+  for (const std::string step : {"", "step: {integrator: modal}\n"}) {
+    config::Problems problems;
+    const std::string text = test::filled(R"yaml(cordis: 1
+space: 1
+accuracy: {tolerance: 0.01, band_hz: 5}
+<step>liaisons:
+  d: {kind: damper, viscosity_n_s_per_m: 10000}
+  s: {kind: spring, stiffness_n_per_m: 20000}
+matter:
+  g: {kind: fixed, at_m: 0}
+  p: {kind: fixed, driven: {position_m: "0.01*sin(6*time_s)"
+  }
+}
+  m: {kind: mass, mass_kg: 1, at_m: 0}
+links:
+  - {liaison: d, between: [p, m]}
+  - {liaison: s, between: [g, m], rest_m: 0}
+)yaml",
+                                          {{"step", step}});
+    scene::Scene scene = scene::load_scene_text(text, "t", problems);
+    ASSERT_FALSE(problems.has_errors()) << problems.text();
+    select_rate(scene, problems);
+    EXPECT_TRUE(check_stability(scene, false, problems).holds()) << scene.step_rate_hz;
+    EXPECT_EQ(problems.text(), "") << step;
+    if (!step.empty()) {
+      EXPECT_GE(scene.step_rate_hz, 3000.0);  // 2 Z / dt on a mass of 1 kg
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cordis::sim

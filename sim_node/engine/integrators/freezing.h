@@ -39,7 +39,7 @@ struct WorldState;
 /// Forces below F on many masses move a soft or free structure far. So sleepers are tried: they
 /// wake together after a pause and do what they would do if they were free. Who stays within e
 /// sleeps again, and the next pause and window are twice as long, up to kMaxLevel. So a trial finds
-/// a creep however slow, and costs a part of the time that goes to 1/kPausesPerWindow.
+/// a creep of e in a window, and costs a part of the time that goes to 1/kPausesPerWindow.
 ///
 /// Between sleepers nothing is computed but Maxwell elements, whose forces fade, and links and sets
 /// with conditions on an age or an impulse. All other conditions are tested after the last of their

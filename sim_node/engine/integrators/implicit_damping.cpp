@@ -175,6 +175,11 @@ double ImplicitDamping::elongation(std::uint32_t a, std::uint32_t b,
   return dot(axis, column(middle_, b) - column(middle_, a));
 }
 
+double ImplicitDamping::elongation_before(std::uint32_t a, std::uint32_t b,
+                                          const Vec3& axis) const noexcept {
+  return dot(axis, column(displacement_, b) - column(displacement_, a));
+}
+
 double ImplicitDamping::find_response(std::uint32_t a, std::uint32_t b, const Vec3& axis) noexcept {
   std::fill(response_.begin(), response_.end(), 0.0);
   column(response_, a) = dt_ * dt_ * axis;

@@ -183,6 +183,26 @@ double find_root(TensionOverSpeed& curve, double half_mobility, double free_spee
   return bracket.at_high == 0.0 ? bracket.high : bracket.secant();
 }
 
+/// The root of u - free_speed + half_mobility * tension(u) on the side and branch of a speed.
+std::optional<double> root_near(TensionOverSpeed& curve, double speed, double half_mobility,
+                                double free_speed) noexcept {
+  curve.find({speed});
+  const double value = speed - free_speed + half_mobility * curve.tension(0);
+  if (value == 0.0) return speed;
+  Bracket bracket{};
+  if (!find_bracket(curve, speed, value, half_mobility, free_speed, bracket)) return {};
+  return find_root(curve, half_mobility, free_speed, bracket);
+}
+
+/// The slope of the law at a speed [N s/m], over a small part of a scale of speeds.
+double slope_at(TensionOverSpeed& curve, double speed, double scale) noexcept {
+  constexpr double kSmall = 1e-7;
+  const double apart = kSmall * scale;
+  if (!(apart > 0.0)) return 0.0;
+  curve.find({speed - apart, speed + apart});
+  return (curve.tension(1) - curve.tension(0)) / (2.0 * apart);
+}
+
 }  // namespace
 
 std::vector<double> largest_extrapolated_steps(const NetworkDescription& network) {
@@ -281,6 +301,7 @@ void StiffFriction::prepare(WorldState& world, const Around& around, Solved& sol
   solved.length = length;
   solved.speed = solved.axis.dot(extrapolated(ends.mat_b) - extrapolated(ends.mat_a)) / dt_;
   solved.extrapolated_speed = solved.speed;
+  solved.speed_of_law = solved.speed;
   TensionOverSpeed curve(world, solved.link);
   curve.find({solved.speed});
   solved.elastic = curve.tension(0) - curve.viscous(0);
@@ -313,23 +334,46 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
   return speed + solved.half_mobility * solved.tension;
 }
 
-/// @param tension  of the link, then that of its root
-/// @return its speed; the tension stays when no root is found
-double StiffFriction::solve_one(const WorldState& world, const Solved& solved, double free_speed,
-                                double& tension) noexcept {
+/// The speed of a link in the half step before [m/s].
+double StiffFriction::speed_before(const WorldState& world, const Around& around,
+                                   const Solved& solved) const noexcept {
+  const StateLink& ends = world.description().state_links[solved.link];
+  if (around.damping != nullptr)
+    return around.damping->elongation_before(ends.mat_a, ends.mat_b, solved.axis) / dt_;
+  const auto moved = [&](std::uint32_t mat) {
+    return Vec3(world.mats.position(mat) - world.mats.delayed(mat));
+  };
+  return solved.axis.dot(moved(ends.mat_b) - moved(ends.mat_a)) / dt_;
+}
+
+/// Finds the speeds of a link. The first round of a step finds how far ahead the law is taken.
+/// @return its tension; that it has when no root is found
+double StiffFriction::solve_one(const WorldState& world, const Around& around, Solved& solved,
+                                bool first_round) noexcept {
+  const double free = free_speed(world, around, solved);
+  const double before = speed_before(world, around, solved);
   TensionOverSpeed curve(world, solved.link);
-  curve.find({solved.speed});
-  const double value = solved.speed - free_speed + solved.half_mobility * curve.tension(0);
-  double speed = solved.speed;
-  if (value != 0.0) {
-    Bracket bracket{};
-    if (!find_bracket(curve, solved.speed, value, solved.half_mobility, free_speed, bracket)) {
-      return solved.speed;
+  // u + ahead (u - before) = s
+  const auto solve_ahead = [&](double ahead) {
+    const double later_free = free + ahead * (free - before);
+    const double mobility = (1.0 + ahead) * solved.half_mobility;
+    const std::optional<double> root = root_near(curve, solved.speed_of_law, mobility, later_free);
+    if (!root) return solved.tension;
+    solved.speed_of_law = *root;
+    return (later_free - *root) / mobility;
+  };
+  if (first_round) solved.ahead = 0.0;
+  double tension = solve_ahead(solved.ahead);
+  if (first_round && around.started) {
+    const double scale = std::abs(free) + std::abs(before) + std::abs(solved.speed_of_law);
+    const double steepness = solved.half_mobility * slope_at(curve, solved.speed_of_law, scale);
+    if (steepness > 1.0) {
+      solved.ahead = 1.0 - 1.0 / steepness;
+      tension = solve_ahead(solved.ahead);
     }
-    speed = find_root(curve, solved.half_mobility, free_speed, bracket);
   }
-  tension = (free_speed - speed) / solved.half_mobility;
-  return speed;
+  if (std::isfinite(tension)) solved.speed = free - solved.half_mobility * tension;
+  return tension;
 }
 
 /// Counts the tensions as constant over the period, and finds the velocities with them.
@@ -369,16 +413,13 @@ double StiffFriction::solve(WorldState& world, const AlignedVector<double>& extr
         const StateLink& ends = world.description().state_links[solved.link];
         solved.half_mobility = damping->find_response(ends.mat_a, ends.mat_b, solved.axis) / dt_;
       }
-      double tension = solved.tension;
-      const double free = free_speed(world, around, solved);
-      const double speed = solve_one(world, solved, free, tension);
+      const double tension = solve_one(world, around, solved, round == 0);
       if (!std::isfinite(tension)) continue;
       add_tension(world, solved, part * (tension - solved.tension));
       if (damping != nullptr) damping->add_response(tension - solved.tension);
       largest = std::max(largest, std::abs(tension));
       changed = std::max(changed, std::abs(tension - solved.tension));
       solved.tension = tension;
-      solved.speed = speed;
     }
     if (!(changed > kSettled * largest)) break;
   }

@@ -30,11 +30,16 @@ std::optional<std::uint32_t> heaviest_solved_friction(const NetworkDescription& 
 bool solves_stiff_friction(const NetworkDescription& network);
 
 /// What `leapfrog` does to the state links beyond those steps: each is solved by itself for the
-/// centred speed u that its own tension leaves,
+/// centred speed u that its own tension leaves, with c = dt / 2 (1/m_a + 1/m_b),
 ///
-///     u = u_free - dt / 2 (1/m_a + 1/m_b) tension(u),   u = (x(n+1) - x(n-1)) / 2 dt along the link
+///     u = u_free - c tension(s),   u = (x(n+1) - x(n-1)) / 2 dt along the link
 ///
-/// all other forces given, by narrowing down the interval that holds the root. That works however
+/// all other forces given, by narrowing down the interval that holds the root. The law is taken at s = u, and
+/// where it is so steep that u would go past its root, later in the period: with z = c tension'(u) above 1,
+///
+///     s = u + (1 - 1/z) (u - v(n-1/2)),    at v(n+1/2) where the law jumps
+///
+/// A linear damper of Z' = 2 z then ends its transient in one step, and dry friction stops. That works however
 /// steep the law is. It may jump, where the tension is then what holds the ends together (dry
 /// friction that sticks). Where a law falls with the speed there may be three roots. The one on the
 /// side and branch of the extrapolated speed is taken, so that what sticks goes on sticking until
@@ -69,10 +74,12 @@ class StiffFriction {
  private:
   struct Solved {
     std::uint32_t link = 0;
-    double half_mobility = 0.0;       // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
-    double tension = 0.0;             // [N]
-    double speed = 0.0;               // [m/s]
-    double extrapolated_speed = 0.0;  // likewise
+    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
+    double tension = 0.0;        // [N]
+    double speed = 0.0;          // centred [m/s]
+    double speed_of_law = 0.0;   // at which the law is taken [m/s]
+    double ahead = 0.0;          // (speed_of_law - speed) / (speed - speed at the half step before)
+    double extrapolated_speed = 0.0;  // [m/s]
     double viscous_power = 0.0;       // of the tension with the extrapolated speed [W]
     double length = 0.0;              // [m]
     double elastic = 0.0;             // the part of the tension that stores energy [N]
@@ -91,8 +98,10 @@ class StiffFriction {
   void add_to(ImplicitDamping& damping, const WorldState& world, double part) const noexcept;
   double free_speed(const WorldState& world, const Around& around,
                     const Solved& solved) const noexcept;
-  double solve_one(const WorldState& world, const Solved& solved, double free_speed,
-                   double& tension) noexcept;
+  double speed_before(const WorldState& world, const Around& around,
+                      const Solved& solved) const noexcept;
+  double solve_one(const WorldState& world, const Around& around, Solved& solved,
+                   bool first_round) noexcept;
 
   double dt_;
   bool is_1d_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace cordis::plan {
@@ -39,12 +40,41 @@ double largest_of_finite(double largest, double value) noexcept {
   return std::isfinite(value) ? std::max(largest, value) : largest;
 }
 
+/// A place at a moment.
+struct Place {
+  double time;  // [s]
+  engine::Vec3 place;
+};
+
+double mean_speed(const Place& a, const Place& b) noexcept {
+  return (b.place - a.place).norm() / (b.time - a.time);
+}
+
+/// The speed of the fastest step between two moments, by halving towards the longer way: a jump has all of it.
+double speed_between(const NetworkDescription& network, const TimeFunction& function, Place low,
+                     Place high) {
+  while (high.time - low.time > network.step) {
+    const double time = 0.5 * (low.time + high.time);
+    const Place middle{time, value_at(function, time)};
+    if (!middle.place.allFinite() || !(time > low.time && time < high.time)) return 0.0;
+    (mean_speed(low, middle) > mean_speed(middle, high) ? high : low) = middle;
+  }
+  return (high.place - low.place).norm() / network.step;
+}
+
 double largest_speed(const NetworkDescription& network, const TimeFunction& function) {
   if (!function.time.empty()) return engine::speed_bound_of_table(function);
   double largest = 0.0;
+  std::optional<Place> before;
   at_moments(network, [&](double time) {
-    const engine::Vec3 way = value_at(function, time + network.step) - value_at(function, time);
+    const Place now{time, value_at(function, time)};
+    const engine::Vec3 way = value_at(function, time + network.step) - now.place;
     largest = largest_of_finite(largest, way.norm() / network.step);
+    if (!now.place.allFinite()) return;
+    // What has gone farther meanwhile than its largest speed goes has jumped, or has been faster.
+    if (before && time > before->time && mean_speed(*before, now) > largest)
+      largest = largest_of_finite(largest, speed_between(network, function, *before, now));
+    before = now;
   });
   return largest;
 }

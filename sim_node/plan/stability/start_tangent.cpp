@@ -41,6 +41,10 @@ double dot(const Columns& a, const Columns& b) {
   return a.cwiseProduct(b).sum();
 }
 
+double inverse_mass(const engine::Mat& mat) {
+  return mat.kind == engine::MatKind::kMass ? 1.0 / mat.mass : 0.0;
+}
+
 /// A vector and what the matrix makes of it.
 struct Direction {
   Columns value;
@@ -137,7 +141,7 @@ Columns random_direction(const Eigen::RowVectorXd& root_of_inverse_mass, int dim
 
 }  // namespace
 
-StartTangent::StartTangent(const engine::NetworkDescription& network)
+StartTangent::StartTangent(const engine::NetworkDescription& network, double solved_up_to)
     : root_of_inverse_mass_(static_cast<Eigen::Index>(network.mats.size())),
       medium_viscosity_(static_cast<Eigen::Index>(network.mats.size())),
       dimension_(network.dimension),
@@ -175,7 +179,13 @@ StartTangent::StartTangent(const engine::NetworkDescription& network)
     const Tangent tangent =
         tangent_at_start(network.state_machines[link.state_machine], start_point(network, link));
     if (tangent.jumps || drives_beside_dampers(tangent)) hold(link.mat_a, link.mat_b);
-    if (tangent.sticks && weights.viscosity_of_state_link(index) == 0.0) has_limit_ = false;
+    const bool is_solved = weights.viscosity_of_state_link(index) == 0.0;
+    if (tangent.sticks && is_solved) has_limit_ = false;
+    const double mobility =
+        inverse_mass(network.mats[link.mat_a]) + inverse_mass(network.mats[link.mat_b]);
+    constexpr double kCentred = 2.0;  // Z' up to which a solved link is centred
+    if (is_solved && solved_up_to * mobility * tangent.viscosity > kCentred)
+      hold(link.mat_a, link.mat_b);
     add(link.mat_a, link.mat_b, network, weights.stiffness * tangent.stiffness,
         weights.stiffness * tangent.tension,
         weights.viscosity_of_state_link(index++) * tangent.viscosity, 0.0);

@@ -17,12 +17,16 @@ namespace cordis::plan {
 /// start, as far as they pull or push there. The weights are those of its integrator at its step
 /// (LimitWeights). A set of more than StartPairs::kMaxPairs pairs is left out. The ends of a law
 /// that has a step at the start, such as dry friction, count as held: small movements may not begin
-/// there. So do those of a law that drives the motion beside implicit dampers: its limit is not known.
+/// there. So do those of a law that drives the motion beside implicit dampers: its limit is not known. A link that
+/// `leapfrog` solves is stable beyond the K' of 4 where its Z' is above 2: up to a step, its ends count as held too.
 ///
 /// In 1 dimension, for linear links alone, this is the network itself, and its limit is exact.
 class StartTangent {
  public:
-  explicit StartTangent(const engine::NetworkDescription& network);
+  /// @param solved_up_to  the step [s] at which Z' of what `leapfrog` solves is taken
+  StartTangent(const engine::NetworkDescription& network, double solved_up_to);
+  explicit StartTangent(const engine::NetworkDescription& network)
+      : StartTangent(network, network.step) {}
 
   /// Beyond this step [s] the network diverges: 4 M - dt^2 K - 2 dt Z then has a direction below 0,
   /// that is an eigenvalue of the scheme below -1. Comes down to the true limit: for up to some
