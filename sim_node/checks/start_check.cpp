@@ -122,9 +122,8 @@ bool swallows_gravity(const NetworkDescription& network, const engine::Mat& mat)
 
 void check_gravity(const scene::Scene& scene, config::Problems& problems) {
   const NetworkDescription& network = scene.network;
-  const bool keeps_positions_alone = network.integrator == engine::IntegratorKind::kLeapfrog ||
-                                     network.integrator == engine::IntegratorKind::kImplicit;
-  if (!keeps_positions_alone) return;
+  // The others carry the way of each step to the next one.
+  if (network.integrator != engine::IntegratorKind::kImplicit) return;
   for (std::uint32_t i = 0; i < network.mats.size(); ++i) {
     const engine::Mat& mat = network.mats[i];
     if (!swallows_gravity(network, mat)) continue;
