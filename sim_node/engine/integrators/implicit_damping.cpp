@@ -29,7 +29,8 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
       dt_(network.step),
       matrix_(dampers_alone(network)),
       displacement_(4 * network.mats.size(), 0.0),
-      drag_of_ports_(displacement_.size(), 0.0),
+      drag_at_first_(displacement_.size(), 0.0),
+      drag_at_end_(displacement_.size(), 0.0),
       turning_(displacement_.size(), 0.0),
       turning_at_end_(displacement_.size(), 0.0),
       constant_(displacement_.size(), 0.0),
@@ -44,7 +45,7 @@ ImplicitDamping::ImplicitDamping(const NetworkDescription& network)
     const Mat& mat = network.mats[i];
     mass_.push_back(mat.kind == MatKind::kMass ? mat.mass : 0.0);
     medium_viscosity_.push_back(network.step * network.medium_viscosity_on(mat));
-    if (mat.kind == MatKind::kPort) ports_.push_back(i);
+    if (mat.kind == MatKind::kPort) ports_.push_back({i});
   }
   for (const Link& link : network.links) {
     if (link.viscosity == 0.0 || mass_[link.mat_a] + mass_[link.mat_b] == 0.0) continue;
@@ -98,19 +99,37 @@ void ImplicitDamping::add_drag_of_links(const AlignedVector<double>& displacemen
   }
 }
 
+void ImplicitDamping::find_drag_of_ports(double ahead, AlignedVector<double>& drag) noexcept {
+  std::fill(middle_.begin(), middle_.end(), 0.0);
+  std::fill(drag.begin(), drag.end(), 0.0);
+  for (const Port& port : ports_) column(middle_, port.mat) = kG * port.displacement(ahead);
+  add_drag_of_links(middle_, drag);
+}
+
 void ImplicitDamping::begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
-                                 const double* last_kick, bool first) noexcept {
+                                 const AlignedVector<double>& extrapolated, const double* last_kick,
+                                 bool first) noexcept {
   find_axes(mats);
   matrix_.assemble(mats);
   displacement_ = displacement;  // the same size: no allocation
   first_period_ = first;
   last_kick_ = last_kick;
   std::fill(constant_.begin(), constant_.end(), 0.0);
+  const auto centred = [&](std::uint32_t mat) {
+    return Vec3(mats.position(mat) - mats.layout().vector(extrapolated.data(), mat));
+  };
+  if (!is_1d_) {
+    for (std::uint32_t i = 0; i < mass_.size(); ++i)
+      column(middle_, i) = 2.0 * centred(i) - column(displacement_, i);
+    sine_ = find_turning(middle_, turning_);
+  }
   if (ports_.empty()) return;
-  std::fill(middle_.begin(), middle_.end(), 0.0);
-  std::fill(drag_of_ports_.begin(), drag_of_ports_.end(), 0.0);
-  for (const std::uint32_t port : ports_) column(middle_, port) = kG * column(displacement_, port);
-  add_drag_of_links(middle_, drag_of_ports_);
+  for (Port& port : ports_) {
+    port.centred = centred(port.mat);
+    port.change = 2.0 * (port.centred - column(displacement_, port.mat));
+  }
+  find_drag_of_ports(begin_of_period() + kG, drag_at_first_);
+  find_drag_of_ports(begin_of_period() + 1.0, drag_at_end_);
 }
 
 void ImplicitDamping::add_constant_force(std::uint32_t mat, const Vec3& force) noexcept {
@@ -131,16 +150,11 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     const Vec3 change = now - Vec3::Map(before + 4 * mat);
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
-  for (std::size_t i = 0; i < count; ++i) {
-    column(middle_, i) = column(displacement_, i);
-    if (mass_[i] > 0.0) column(middle_, i) += kick_at(i, 0.5);
-  }
-  const double sine = find_turning(middle_, turning_);
   const double at_first = kG * (begin_of_period() + kG);
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
     column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
-                        column(drag_of_ports_, i) - at_first * column(turning_, i);
+                        column(drag_at_first_, i) - at_first * column(turning_, i);
   }
   matrix_.solve(first_.data());
   const double at_end = kG * (begin_of_period() + 1.0);
@@ -150,24 +164,26 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
       const Vec3 begin = column(displacement_, i);
       column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
                                        kG * kick_at(i, 0.5)) -
-                           column(drag_of_ports_, i) - at_end * column(turning, i);
+                           column(drag_at_end_, i) - at_end * column(turning, i);
     }
     matrix_.solve(second_.data());
   };
   find_second(turning_);
-  turns_fast_ = sine > kSlowTurn;
-  if (turns_fast_) {
+  if (!is_1d_) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
+      column(middle_, i) = mass_[i] > 0.0 ? column(second_, i) : column(displacement_, i);
     }
-    find_turning(middle_, turning_at_end_);
-    find_second(turning_at_end_);
+    for (const Port& port : ports_)
+      column(middle_, port.mat) = port.displacement(begin_of_period() + 1.0);
+    turns_fast_ = std::max(sine_, find_turning(middle_, turning_at_end_)) > kSlowTurn;
+    if (turns_fast_) find_second(turning_at_end_);
   }
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = mass_[i] > 0.0
                              ? Vec3((1.0 - kG) * column(first_, i) + kG * column(second_, i))
                              : Vec3(column(displacement_, i));
   }
+  for (const Port& port : ports_) column(middle_, port.mat) = port.centred;
 }
 
 double ImplicitDamping::elongation(std::uint32_t a, std::uint32_t b,
@@ -228,8 +244,12 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
     for (std::size_t i = 0; i < count; ++i) {
       column(middle_, i) =
           mass_[i] == 0.0
-              ? Vec3(0.5 * column(displacement_, i))
+              ? Vec3(Vec3::Zero())
               : Vec3(2.0 * kG * (1.0 - kG) * column(first_, i) + kG * kG * column(second_, i));
+    }
+    for (const Port& port : ports_) {
+      column(middle_, port.mat) =
+          2.0 * kG * (1.0 - kG) * port.displacement(kG) + kG * kG * port.displacement(1.0);
     }
   }
   // One k for u1 and u2 has no share in w, but in the mean velocity of the first period.
@@ -247,12 +267,13 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];
 
   Work work;
+  for (const Port& port : ports_) {
+    // the first period has its work from x(0) to the moment 1/2
+    work.port_work += dot(port.displacement(first ? 0.25 : 0.0), column(drag_, port.mat));
+  }
   for (std::uint32_t i = 0; i < count; ++i) {
+    if (mass_[i] == 0.0) continue;
     const Vec3 begin = column(displacement_, i);
-    if (mass_[i] == 0.0) {
-      work.port_work += dot(begin, column(drag_, i));
-      continue;
-    }
     column(drag_, i) += medium_viscosity_[i] * column(middle_, i);
     const Vec3 end = begin + (part * mats.kick_of(i, mats.force(i)) - column(drag_, i) / mass_[i]);
     const double energy_at_begin = mass_[i] * dot(begin, begin);

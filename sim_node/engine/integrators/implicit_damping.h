@@ -24,9 +24,14 @@ namespace cordis::engine {
 /// and angular momentum are kept to rounding; the rounding of a velocity grows with Z dt / m.
 /// Stable while dt^2 K < 3.852 M, however large Z is (implicit_damping_limit).
 ///
+/// Ports move as given: with v(n) + c dv at the moment n + c, where c is g - 1/2 for u1 and 1/2 for u2. Of a
+/// driven one the next place is known. So dv is the change from v(n-1/2) to v(n+1/2), and v(n) their mean. Of
+/// any other one dv is 0, and v(n) that of the last period.
+///
 /// A damper pulls along its axis a at x(n), and turns meanwhile. At the moment n + c its ends part by a u + c k:
 /// c is g - 1/2 for u1 and 1/2 for u2. Ends that keep their length part by -k / 2 along, from what u2 goes
-/// across. k is found from v and the kicks. Where a damper turns by more than 0.01 rad, u2 is solved again with
+/// across. k is found from 2 v(n) - v(n-1/2), where v(n) is that of the last period. The forces of this one do not
+/// count: others may carry them. Where by that or by u2 a damper turns by more than 0.01 rad, u2 is solved again with
 /// the k of the first u2. So a heavy damper that turns keeps its length.
 ///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
@@ -45,12 +50,14 @@ class ImplicitDamping {
 
   /// Takes Z at the present positions; no force is constant over the period yet.
   /// @param displacement  dt v(n-1/2); before the first period dt v(0); of a port its last one
+  /// @param extrapolated  x(n) - dt v(n), stored as the MATs are [m]
   /// @param last_kick     kick() of the last step, which stays until the next; null: not known, and
   ///                      the forces change little
   /// @param first         this is the period from x(0)
   /// Real time: in 2 and 3 dimensions one numeric factorisation, no allocation.
   void begin_step(const MatArray& mats, const AlignedVector<double>& displacement,
-                  const double* last_kick, bool first) noexcept;
+                  const AlignedVector<double>& extrapolated, const double* last_kick,
+                  bool first) noexcept;
 
   /// Counts `force` [N] at `mat`, which is among the forces of the MATs, as constant over the
   /// period.
@@ -101,7 +108,18 @@ class ImplicitDamping {
     double length = 0.0;  // [m]
   };
 
+  /// How a port moves in this period.
+  struct Port {
+    std::uint32_t mat;
+    Vec3 centred = Vec3::Zero();  // dt v(n) [m]
+    Vec3 change = Vec3::Zero();   // dt (v(n+1/2) - v(n-1/2)) [m]
+
+    /// dt v(n + ahead) [m].
+    Vec3 displacement(double ahead) const noexcept { return centred + ahead * change; }
+  };
+
   void find_axes(const MatArray& mats) noexcept;
+  void find_drag_of_ports(double ahead, AlignedVector<double>& drag) noexcept;
   /// From the moment of x(n), in periods.
   double begin_of_period() const noexcept { return first_period_ ? 0.0 : -0.5; }
   double find_turning(const AlignedVector<double>& displacement,
@@ -115,16 +133,18 @@ class ImplicitDamping {
   std::vector<Damper> dampers_;
   std::vector<double> mass_;              // [kg], 0 unless a mass
   std::vector<double> medium_viscosity_;  // dt Z of the medium, per MAT [kg]
-  std::vector<std::uint32_t> ports_;      // that move
+  std::vector<Port> ports_;               // that move
   StiffnessMatrix matrix_;                // M + g dt Z
   AlignedVector<double> displacement_;    // dt v(n-1/2)
-  AlignedVector<double> drag_of_ports_;   // g dt Z of their displacements, on the masses [kg m]
+  AlignedVector<double> drag_at_first_;   // g dt Z of what ports do at u1, on the masses [kg m]
+  AlignedVector<double> drag_at_end_;     // likewise at u2
   AlignedVector<double> turning_;  // dt Z k of dampers along their axes, on the masses [kg m]
   AlignedVector<double> turning_at_end_;  // likewise at u2
   AlignedVector<double> constant_;        // forces [N]
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   bool first_period_ = false;
+  double sine_ = 0.0;               // of the largest turn by which turning_ is
   bool turns_fast_ = false;         // a damper does: turning_at_end_ counts
   AlignedVector<double> first_;     // dt u1
   AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)

@@ -123,7 +123,8 @@ void Leapfrog::begin_damping(WorldState& world) noexcept {
   for (const std::uint32_t port : world.port_inputs.ports()) {
     column(velocity_, port) = mats.position(port) - mats.delayed(port);
   }
-  damping_->begin_step(mats, velocity_, has_last_kick() ? last_kick() : nullptr, !started_);
+  damping_->begin_step(mats, velocity_, extrapolated_, has_last_kick() ? last_kick() : nullptr,
+                       !started_);
 }
 
 /// Half of the work of dampers lies before the moment of the forces; in the first step all of it

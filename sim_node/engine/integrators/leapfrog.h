@@ -23,9 +23,9 @@ namespace cordis::engine {
 /// (friction, bows), they are solved one by one (StiffFriction), with the same limit. Sets are always
 /// extrapolated.
 ///
-/// Ports are given, so their velocity is that of the last period; Maxwell elements answer to the
-/// elongation increment. The account belongs to the moment of the last forces, all but the kinetic
-/// energy in closed form. That is the energy of the centred velocity (x(n+1) - x(n-1)) / 2 dt. With
+/// The velocity of driven ports is centred, as their next place is known. That of other ports is that
+/// of the last period. Maxwell elements answer to the elongation increment. The account belongs to
+/// the moment of the last forces, all but the kinetic energy in closed form. That is the energy of the centred velocity (x(n+1) - x(n-1)) / 2 dt. With
 /// implicit dampers it is the mean of those of the two velocities. What finite steps do to it is
 /// the residual, of second order; implicit dampers, and all dampers beside them, whose work is that
 /// of their forces, leave none.
