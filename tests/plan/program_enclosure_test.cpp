@@ -296,7 +296,7 @@ TEST(ProgramEnclosure, HasNoSlopeWhereAPartIsNoFiniteNumber) {
   }
   const Term chosen = three(Operation::kSelect, 0.0 * one(Operation::kSqrt, x) < 1.0, 2e5 * d, 0.0);
   EXPECT_FALSE(std::isfinite(plan::steepest_slopes(chosen.program, box).over_distance));
-  const Term pole = 2e5 * d + 0.0 * two(Operation::kDivide, 1.0, x);
+  const Term pole = 2e5 * d + 0.0 * two(Operation::kDivide, 1.0, d - 0.0050371);
   EXPECT_FALSE(std::isfinite(plan::steepest_slopes(pole.program, box).over_distance));
   EXPECT_FALSE(plan::ends_in_a_step(pole.program, box));
 }
@@ -314,6 +314,15 @@ TEST(ProgramEnclosure, HasTheSlopeOfWhatIsFiniteThroughoutTheBox) {
     EXPECT_LT(slope, 2.1e5);
     EXPECT_FALSE(plan::ends_in_a_step(law.program, box));
   }
+}
+
+TEST(ProgramEnclosure, OfARootIsSteepOnOneSideWhereItsArgumentEndsAtMinus0) {
+  const Program program =
+      one(Operation::kSqrt, one(Operation::kNegate, q(Quantity::kDistance))).program;
+  const plan::Interval slope =
+      plan::enclosure_of(program, {{-1.0, 0.0}, {}, 0.0, {}, {}}).over_distance;
+  EXPECT_EQ(slope.low, -INFINITY);
+  EXPECT_EQ(slope.high, -0.5);
 }
 
 /// What is decided without the part that fails, and a root that begins at 0.

@@ -285,7 +285,7 @@ class Evaluation {
       case Operation::kSqrt:
         if (x.low < 0.0) return kFailing;
         return chain(u, {std::sqrt(x.low), std::sqrt(x.high)},
-                     {0.5 / std::sqrt(x.high), 0.5 / std::sqrt(x.low)});
+                     {0.5 / std::sqrt(x.high), 0.5 / std::sqrt(std::abs(x.low))});  // of -0 as well
       case Operation::kSign:
         if (x.low > 0.0) return {{1.0, 1.0}};
         if (x.high < 0.0) return {{-1.0, -1.0}};
@@ -523,7 +523,8 @@ class StepSearch {
   /// The value and the slope at a place.
   struct Place {
     double value;  // 0 for what is no finite number
-    double slope;  // 0 where a condition just changes, and for what is no finite number
+    double
+        slope;  // 0 where none is known: where a condition just changes, or a part is no finite number
   };
   double value_at(const LinkBox& line, double place) const {
     engine::LinkQuantities now{};
@@ -546,7 +547,8 @@ class StepSearch {
     line.*variable_ = {place, place};
     Evaluation evaluation(line);
     const Enclosed here = evaluation.enclose(program_);
-    return {value, evaluation.is_undecided() ? 0.0 : size_of(here.slope[slope_])};
+    const bool is_known = !evaluation.is_undecided() && !evaluation.fails();
+    return {value, is_known ? size_of(here.slope[slope_]) : 0.0};
   }
   /// True if the values at both ends are farther apart than the slopes there make them.
   bool steps_between_the_ends_of(const LinkBox& line) const {

@@ -47,12 +47,12 @@ struct SteepestSlopes {
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
 /// True if the program has a step where one of its conditions changes: on lines over the distance at 9 speeds, and over
-/// the speed at 9 distances. The values at both sides of the place are compared. One of about 1e-9 of what the slopes
-/// make of `within` is not seen, nor one that ends between two lines.
+/// the speed at 9 distances, at 5 values of each variable. The values at both sides of the place are compared. One of
+/// about 1e-9 of what the slopes make of `within` is not seen, nor one that ends between two lines.
 /// @param box     where
 /// @param within  its part that is resolved to 1e-9, and through which the lines go
-/// Of a program that asks for variables of the network, at 5 values of each. Where these alone choose between two values, it
-/// is none. Precondition: well-formed, of quantities known to laws.
+/// Where variables alone choose between two values, it is none.
+/// Precondition: well-formed, of quantities known to laws.
 bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox& within);
 
 /// True if a finite value other than 0 ends where the program is no finite number, which counts as 0: found on the same lines,
