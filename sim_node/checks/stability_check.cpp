@@ -11,11 +11,41 @@
 #include "node/assert.h"
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/stability/limit_weights.h"
+#include "sim_node/plan/stability/parameter_bounds.h"
 #include "sim_node/plan/stability/step_bound.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
 namespace {
+
+/// True if a formula may make the stiffness of a state fall below 0.
+bool may_fall_below_0(const engine::StateMachine& state_machine, const plan::Reach& reach) {
+  return std::ranges::any_of(state_machine.states, [&reach](const engine::LinkState& state) {
+    return engine::asks_for_variable(state.elasticity) &&
+           plan::linear_bounds(state, reach).stiffness.low < 0.0;
+  });
+}
+
+/// The first link with states or set at the MAT of which that is true.
+std::optional<plan::LiaisonId> falling_below_0(const engine::NetworkDescription& network,
+                                               std::uint32_t mat) {
+  const plan::Reach reach = plan::reach_of(network);
+  const auto falls = [&](std::uint32_t state_machine) {
+    return may_fall_below_0(network.state_machines[state_machine], reach);
+  };
+  for (std::uint32_t l = 0; l < network.state_links.size(); ++l) {
+    const engine::StateLink& link = network.state_links[l];
+    if ((link.mat_a == mat || link.mat_b == mat) && falls(link.state_machine))
+      return plan::LiaisonId{plan::LiaisonKind::kStateLink, l};
+  }
+  for (std::uint32_t s = 0; s < network.sets.size(); ++s) {
+    const engine::SetLiaison& set = network.sets[s];
+    const bool is_member = std::ranges::find(set.set_p, mat) != set.set_p.end() ||
+                           std::ranges::find(set.set_q, mat) != set.set_q.end();
+    if (is_member && falls(set.state_machine)) return plan::LiaisonId{plan::LiaisonKind::kSet, s};
+  }
+  return {};
+}
 
 /// A liaison whose law grows ever steeper, at the MAT if there is one there.
 std::optional<plan::LiaisonId> liaison_without_largest_slope(const plan::LiaisonGraph& graph,
@@ -158,6 +188,16 @@ std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
   }
   return "too stiff for " + std::to_string(std::lround(scene.step_rate_hz)) + " Hz (" + numbers +
          "), of which the most is " + name;
+}
+
+std::string hint_of_divergence(const scene::Scene& scene, std::uint32_t mat) {
+  if (const auto falling = falling_below_0(scene.network, mat)) {
+    const scene::Called liaison = scene::call_liaison(scene, falling);
+    return "The formula of " + liaison.name + " (" + scene::place_text(liaison.place) +
+           ") may make its stiffness fall below 0, where it drives its ends apart at any step rate";
+  }
+  return "A step rate above " + std::to_string(std::lround(scene.step_rate_hz)) +
+         " Hz, or less stiffness or viscosity, may hold it";
 }
 
 }  // namespace cordis::sim

@@ -33,4 +33,8 @@ std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty&
 /// place, and how the sum of all there stands to the limit. Not in real time.
 std::string reason_of_divergence(const scene::Scene& scene, std::uint32_t mat);
 
+/// What could hold a scene that has diverged at this MAT first, as a sentence without its full stop: a rate, or formulas
+/// that keep a stiffness there at 0 or above. Not in real time.
+std::string hint_of_divergence(const scene::Scene& scene, std::uint32_t mat);
+
 }  // namespace cordis::sim

@@ -195,9 +195,7 @@ std::string Simulation::failure() const {
   if (!failed_) return {};
   const std::string what = "the scene diverged at step " + std::to_string(world_.step_count());
   const auto why = [this](std::uint32_t mat) {
-    return reason_of_divergence(*scene_, mat) + ". A step rate above " +
-           std::to_string(std::lround(scene_->step_rate_hz)) +
-           " Hz, or less stiffness or viscosity, may hold it";
+    return reason_of_divergence(*scene_, mat) + ". " + hint_of_divergence(*scene_, mat);
   };
   std::uint32_t fastest = 0;
   double most = -1.0;

@@ -463,6 +463,23 @@ signals: {x: {of: a, quantity: position}}
   EXPECT_EQ(nlohmann::json::parse(text_of("n.json"))["complete"], false);
 }
 
+TEST_F(Simulate, SaysThatAFormulaMayMakeAStiffnessFallBelow0) {
+  const std::string scene = put("falling.yaml", R"(cordis: 1
+name: falling
+space: 1
+step: {rate_hz: 1000}
+liaisons: {k: {kind: spring, stiffness_n_per_m: "100 - 200*time_s", rest_m: 0}}
+matter:
+  a: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.1}
+links: [{liaison: k, between: [a, m]}]
+)");
+  EXPECT_EQ(run({scene, "--duration", "20s", "--summary", path("n.json")}), kFailure);
+  EXPECT_THAT(error_, HasSubstr("the scene diverged at step"));
+  EXPECT_THAT(error_, HasSubstr("may make its stiffness fall below 0"));
+  EXPECT_THAT(error_, testing::Not(HasSubstr("may hold it")));
+}
+
 TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
   const std::vector<std::string> scenes{
       test::moved_mass("rate_hz: 1000", "at_m: 0.1",

@@ -115,6 +115,54 @@ TEST(ForceSlopes, WithoutABoundAreNamed) {
             "it asks for what masses move, and nothing bounds what that brings in");
 }
 
+TEST(ForceSlopes, OfAForceThatStepsAreNotCertain) {
+  const Term x = coordinate(0);
+  const Term y = coordinate(1);
+  const Term apart = (x - 0.3) * (x - 0.3) + (y - 0.2) * (y - 0.2);
+  for (const Term& force : {
+           three(Operation::kSelect, x > 0.005, Term(-2e5) * x, 0.0),
+           three(Operation::kSelect, apart < 1e-4, Term(-2e5) * x, 0.0),
+           Term(-5.0) * x * three(Operation::kSelect, y > 1.0, 1.0, 2.0),
+           Term(-5.0) * x - rate(0) * three(Operation::kSelect, rate(0) > 0.1, 1.0, 2.0),
+           Term(-2e5) * x + Term(0.0) * one(Operation::kSqrt, x - 0.005),
+           Term(-2e5) * x + Term(0.0) * one(Operation::kSqrt, y - 0.005),
+           Term(-2e5) * x + Term(0.0) * one(Operation::kLog, x - 0.005),
+           Term(-2e5) * x + Term(0.0) * one(Operation::kExp, Term(1e7) * (x - 0.004)),
+       }) {
+    EXPECT_EQ(slopes(force, Term(0.0)).uncertainty, "its force jumps");
+  }
+}
+
+TEST(ForceSlopes, OfAForceThatTimeOrASignalChoosesAreTheLarger) {
+  const Term late = seconds() > 1.0;
+  const Term on = asked(1) > 3.0;
+  for (const Term& choice : {late, on}) {
+    const plan::ForceSlopes found = slopes(
+        three(Operation::kSelect, choice, -2.0, -1.0) * coordinate(0), Term(-1.0) * coordinate(1));
+    EXPECT_EQ(found.uncertainty, "");
+    EXPECT_DOUBLE_EQ(found.stiffness, 2.0);
+    EXPECT_DOUBLE_EQ(found.variation, 1.0);
+  }
+  const plan::ForceSlopes medium =
+      slopes(three(Operation::kSelect, late, -0.01, -0.0005) * rate(0), Term(0.0));
+  EXPECT_EQ(medium.uncertainty, "");
+  EXPECT_DOUBLE_EQ(medium.viscosity, 0.01);
+}
+
+/// A wall that begins without a step, and a part that is finite everywhere.
+TEST(ForceSlopes, OfWhatMeetsAreCertain) {
+  const Term x = coordinate(0);
+  const Term y = coordinate(1);
+  for (const Term& force : {
+           three(Operation::kSelect, x > 0.1, Term(-5.0) * (x - 0.1), 0.0),
+           Term(-5.0) * x + Term(0.0) * one(Operation::kSqrt, x * x + y * y + 0.001),
+       }) {
+    const plan::ForceSlopes found = slopes(force, Term(-1.0) * y);
+    EXPECT_EQ(found.uncertainty, "");
+    EXPECT_DOUBLE_EQ(found.stiffness, 5.0);
+  }
+}
+
 TEST(ForceSlopes, NameTheVariablesThatNothingBounds) {
   using Numbers = std::vector<std::uint32_t>;
   const auto variables = [](const Term& x, const Term& y) { return slopes(x, y).variables; };

@@ -64,6 +64,18 @@ TEST(ParameterBounds, OfALinearStateAreItsNumberAndWhatItsFactorsAdd) {
   expect(linear_bounds(no_product, reach_of_variables()).stiffness, 100.0, 100.0);
 }
 
+TEST(ParameterBounds, OfAFormulaThatStepsAreItsTwoValues) {
+  engine::LinkState state;
+  const Term late = variable(1) > 3.0;
+  state.elasticity = expression_law(test::three(Operation::kSelect, late, 200.0, 100.0) *
+                                    q(Quantity::kElongation));
+  state.dissipation =
+      expression_law((Term(2.0) + one(Operation::kSign, variable(0) - 0.5)) * q(Quantity::kSpeed));
+  const LinearBounds bounds = linear_bounds(state, reach_of_variables());
+  expect(bounds.stiffness, 100.0, 200.0);
+  expect(bounds.viscosity, 1.0, 3.0);
+}
+
 TEST(ParameterBounds, OfABendAreThoseOfAllItsStates) {
   engine::NetworkDescription network;
   engine::Bend bend;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -268,6 +269,96 @@ TEST(ProgramEnclosure, FindsAStepOfSomeSpeedsAndOneFarAway) {
   const Term far = three(Operation::kSelect, d > 3.0, 1000.0 * d + 300.0, 1000.0 * d);
   EXPECT_FALSE(plan::has_step(far.program, box, box));
   EXPECT_TRUE(plan::has_step(far.program, all, box));
+}
+
+Term any_variable(std::uint32_t number) {
+  Term term(0.0);
+  term.program.code = {{Operation::kVariable, Quantity::kDistance, 0.0, number}};
+  return term;
+}
+
+/// Parts that count as nothing where they are finite, and are no finite number within the box.
+TEST(ProgramEnclosure, HasNoSlopeWhereAPartIsNoFiniteNumber) {
+  const Term d = q(Quantity::kDistance);
+  const Term x = d - 0.005;
+  const LinkBox box{{0.0, 0.02}, {-1.0, 1.0}, 0.0, {}, {}};
+  const Term half_power = two(Operation::kPower, x, 0.5);
+  const Term exponential = one(Operation::kExp, 1e7 * (d - 0.004));
+  const Term two_to = two(Operation::kPower, 2.0, 1e7 * (d - 0.004));
+  for (const Term& hole : {one(Operation::kSqrt, x), one(Operation::kLog, x), half_power,
+                           exponential, two_to, one(Operation::kSqrt, one(Operation::kNegate, x)),
+                           one(Operation::kTanh, one(Operation::kSqrt, x)),
+                           one(Operation::kSign, one(Operation::kLog, x))}) {
+    const Term law = 2e5 * d + 0.0 * hole;
+    EXPECT_FALSE(std::isfinite(plan::steepest_slopes(law.program, box).over_distance));
+    EXPECT_EQ(plan::flattest_slope(law.program, box, 2e5), -INFINITY);
+    EXPECT_TRUE(plan::ends_in_a_step(law.program, box));
+  }
+  const Term chosen = three(Operation::kSelect, 0.0 * one(Operation::kSqrt, x) < 1.0, 2e5 * d, 0.0);
+  EXPECT_FALSE(std::isfinite(plan::steepest_slopes(chosen.program, box).over_distance));
+  const Term pole = 2e5 * d + 0.0 * two(Operation::kDivide, 1.0, d - 0.0050371);
+  EXPECT_FALSE(std::isfinite(plan::steepest_slopes(pole.program, box).over_distance));
+  EXPECT_FALSE(plan::ends_in_a_step(pole.program, box));
+}
+
+TEST(ProgramEnclosure, HasTheSlopeOfWhatIsFiniteThroughoutTheBox) {
+  const Term d = q(Quantity::kDistance);
+  const LinkBox box{{-0.02, 0.02}, {-1.0, 1.0}, 0.0, {}, {}};
+  const Term root = one(Operation::kSqrt, d * d + 1e-6);
+  const Term clamped = two(Operation::kPower, two(Operation::kMax, 0.0, d), 1.5);
+  const Term guarded = three(Operation::kSelect, d > -0.01, one(Operation::kSqrt, d + 0.015), 0.0);
+  for (const Term& harmless : {root, clamped, guarded, one(Operation::kExp, 1e3 * d)}) {
+    const Term law = 2e5 * d + 0.0 * harmless;
+    const double slope = plan::steepest_slopes(law.program, box).over_distance;
+    EXPECT_GE(slope, 2e5);
+    EXPECT_LT(slope, 2.1e5);
+    EXPECT_FALSE(plan::ends_in_a_step(law.program, box));
+  }
+}
+
+TEST(ProgramEnclosure, OfARootIsSteepOnOneSideWhereItsArgumentEndsAtMinus0) {
+  const Program program =
+      one(Operation::kSqrt, one(Operation::kNegate, q(Quantity::kDistance))).program;
+  const plan::Interval slope =
+      plan::enclosure_of(program, {{-1.0, 0.0}, {}, 0.0, {}, {}}).over_distance;
+  EXPECT_EQ(slope.low, -INFINITY);
+  EXPECT_EQ(slope.high, -0.5);
+}
+
+/// What is decided without the part that fails, and a root that begins at 0.
+TEST(ProgramEnclosure, IsDecidedWithoutAPartThatIsNoFiniteNumber) {
+  const Term d = q(Quantity::kDistance);
+  const LinkBox box{{0.0, 0.02}, {-1.0, 1.0}, 0.0, {}, {}};
+  const Term fails = one(Operation::kSqrt, d - 0.005) > 1.0;
+  const auto value = [&](const Term& term) { return plan::values_of(term.program, box); };
+  EXPECT_EQ(value(both(fails, d > 1.0)).high, 0.0);
+  EXPECT_EQ(value(two(Operation::kOr, fails, d < 1.0)).low, 1.0);
+  EXPECT_EQ(value(both(fails, d < 1.0)).low, 0.0);
+  EXPECT_EQ(value(both(fails, d < 1.0)).high, 1.0);
+  EXPECT_FALSE(plan::ends_in_a_step(one(Operation::kSqrt, d - 0.005).program, box));
+}
+
+/// A condition of variables alone holds, or does not, over all of the distance.
+TEST(ProgramEnclosure, HasNoStepWhereVariablesAloneChoose) {
+  const Term d = q(Quantity::kDistance);
+  const std::vector<plan::Interval> variables{{0.0, INFINITY}, plan::kAnyNumber};
+  LinkBox box{{-0.5, 0.5}, {-1.0, 1.0}, 0.0, {}, {}};
+  box.variables = &variables;
+  const Term late = any_variable(0) > 1.0;
+  const Term sign = one(Operation::kSign, any_variable(1) - 1.0);
+  for (const Term& stiffness :
+       {three(Operation::kSelect, late, 200.0, 100.0), 150.0 + 50.0 * sign, 100.0 + 100.0 * late}) {
+    const Term law = stiffness * d;
+    EXPECT_EQ(plan::steepest_slopes(law.program, box).over_distance, 200.0);
+    EXPECT_EQ(plan::flattest_slope(law.program, box, 200.0), 100.0);
+    EXPECT_FALSE(plan::has_step(law.program, box, box));
+  }
+  const Term stepped =
+      three(Operation::kSelect, d > 0.1, 200.0, 100.0) * (d + 0.0 * any_variable(0));
+  EXPECT_TRUE(plan::has_step(stepped.program, box, box));
+  const Term later =
+      three(Operation::kSelect, both(d > 0.1, any_variable(0) > 5.0), 200.0, 100.0) * d;
+  EXPECT_TRUE(plan::has_step(later.program, box, box));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <optional>
 #include <queue>
 
@@ -177,13 +178,18 @@ bool ForceField::depends(std::size_t first) const {
   });
 }
 
-/// A formula with one coordinate as the distance or the speed of a link, and the others as variables.
+/// A formula with one coordinate as the distance or the speed of a link, and the others and the time as variables.
 Program ForceField::program_over(std::size_t axis, std::size_t coordinate) const {
   Program program = function_.formula[axis];
   raise_instead_of_dividing(program);
   const auto first = static_cast<std::uint32_t>(asked_.size());
   for (Instruction& instruction : program.code) {
     if (instruction.operation != Operation::kQuantity) continue;
+    if (instruction.quantity == Quantity::kAge) {
+      instruction = {Operation::kVariable, Quantity::kDistance, 0.0,
+                     first + static_cast<std::uint32_t>(2 * kAxes)};
+      continue;
+    }
     for (std::uint32_t c = 0; c < 2 * kAxes; ++c) {
       if (instruction.quantity != quantity_of(c)) continue;
       if (c == coordinate) {
@@ -197,16 +203,84 @@ Program ForceField::program_over(std::size_t axis, std::size_t coordinate) const
   return program;
 }
 
-ProgramEnclosure ForceField::enclose(const Program& program, std::size_t coordinate,
-                                     const MotionBox& box) const {
+LinkBox ForceField::link_box(std::size_t coordinate, const MotionBox& box) const {
   // Reserved once for all that a search encloses.
   variables_.assign(inputs_.begin(), inputs_.end());
   variables_.insert(variables_.end(), box.begin(), box.end());
+  variables_.push_back(time_);
   LinkBox link;
   (coordinate < kAxes ? link.distance : link.speed) = box[coordinate];
-  link.remembered = time_;
   link.variables = &variables_;
-  return enclosure_of(program, link);
+  return link;
+}
+
+ProgramEnclosure ForceField::enclose(const Program& program, std::size_t coordinate,
+                                     const MotionBox& box) const {
+  return enclosure_of(program, link_box(coordinate, box));
+}
+
+bool ForceField::has_step(double extent) const {
+  MotionBox whole;
+  whole.fill({-extent, extent});
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    for (std::size_t c = 0; c < 2 * kAxes; ++c) {
+      if (depends_[axis][c] && has_step_along(axis, c, whole)) return true;
+    }
+  }
+  return false;
+}
+
+/// Bisects the boxes in which a condition may change, the largest first, and looks along a line in each that is left.
+bool ForceField::has_step_along(std::size_t axis, std::size_t coordinate,
+                                const MotionBox& whole) const {
+  constexpr std::size_t kBoxes = 400;
+  const Program& program = over_[axis][coordinate];
+  std::deque<MotionBox> open{whole};
+  for (std::size_t n = 0; n < kBoxes && !open.empty(); ++n) {
+    const MotionBox box = open.front();
+    open.pop_front();
+    if (!is_undecided_or_fails(program, link_box(coordinate, box))) continue;
+    const std::size_t longest = longest_axis(axis, box);
+    const double middle = middle_of(box[longest]);
+    MotionBox lower = box;
+    MotionBox upper = box;
+    lower[longest].high = upper[longest].low = middle;
+    open.push_back(lower);
+    open.push_back(upper);
+  }
+  std::size_t turn = 0;
+  return std::ranges::any_of(open, [&](const MotionBox& box) {
+    return has_step_on_line_through(program, coordinate, box, turn++);
+  });
+}
+
+/// The coordinate along which a component depends on the motion and a box is longest.
+std::size_t ForceField::longest_axis(std::size_t axis, const MotionBox& box) const {
+  std::size_t longest = 0;
+  double length = -1.0;
+  for (std::size_t c = 0; c < 2 * kAxes; ++c) {
+    const double here = even(box[c].high) - even(box[c].low);
+    if (!depends_[axis][c] || !(here > length)) continue;
+    longest = c;
+    length = here;
+  }
+  return longest;
+}
+
+/// @param turn  chooses the values of what the force asks for
+bool ForceField::has_step_on_line_through(const Program& program, std::size_t coordinate,
+                                          const MotionBox& box, std::size_t turn) const {
+  constexpr std::array kValues{0.5, 1e3, -1.0, 2.0, -1e3};
+  LinkBox line = link_box(coordinate, box);
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    Interval& range = variables_[i];
+    const bool is_of_motion = i >= inputs_.size() && i < inputs_.size() + 2 * kAxes;
+    const double value =
+        is_of_motion ? middle_of(range)
+                     : std::clamp(kValues[(turn + i) % kValues.size()], range.low, range.high);
+    range = {value, value};
+  }
+  return has_step_on_line(program, line, coordinate < kAxes ? &LinkBox::distance : &LinkBox::speed);
 }
 
 /// The extreme is that of a slope times a sign; its bound is infinite where none is known. Boxes are bisected where it may

@@ -46,6 +46,9 @@ class ForceField {
   FoundSlope slopes(std::size_t axis, std::size_t coordinate, double extent) const;
   /// What they lie within in a box.
   Interval slope_in(std::size_t axis, std::size_t coordinate, const MotionBox& box) const;
+  /// True if a component has a step over a coordinate, at places and velocities up to an extent: where one of its conditions
+  /// changes, or where it is no finite number and counts as 0. Looked for on lines through 400 boxes where that may be.
+  bool has_step(double extent) const;
   /// What a component lies within in a box.
   Interval value_in(std::size_t axis, const MotionBox& box) const;
   /// The force at a place at rest, at a time and with what it asks for in the middle of its range [N].
@@ -66,8 +69,14 @@ class ForceField {
   ForceField with_small_inputs() const;
   bool has_bounds_near_origin() const;
   engine::Program program_over(std::size_t axis, std::size_t coordinate) const;
+  /// Valid until the next call.
+  LinkBox link_box(std::size_t coordinate, const MotionBox& box) const;
   ProgramEnclosure enclose(const engine::Program& program, std::size_t coordinate,
                            const MotionBox& box) const;
+  bool has_step_along(std::size_t axis, std::size_t coordinate, const MotionBox& whole) const;
+  std::size_t longest_axis(std::size_t axis, const MotionBox& box) const;
+  bool has_step_on_line_through(const engine::Program& program, std::size_t coordinate,
+                                const MotionBox& box, std::size_t turn) const;
   struct Extreme {
     double bound;    // no place has more
     double reached;  // some place has this

@@ -16,6 +16,7 @@ using engine::VariableKind;
 using engine::Vec3;
 
 constexpr double kLargestMotion = 1e9;  // [m], [m/s]
+constexpr const char* kSteps = "its force jumps";
 constexpr const char* kNoLargest = "no largest slope over all places and velocities is known";
 
 /// True for a variable that no motion of a mass moves: of time, of states, of where a port or a fixed point is.
@@ -212,6 +213,12 @@ ForceSlopes slopes_of_field(const ForceField& field, const std::vector<bool>& is
   const FoundSlopes over_velocity = slopes_over(field, kAxes);
   if (!is_finite(over_place.within) || !is_finite(over_velocity.within)) {
     find_unbounded(field, found);
+    if (found.uncertainty == kNoLargest && field.has_step(kLargestMotion))
+      found.uncertainty = kSteps;
+    return found;
+  }
+  if (field.has_step(kLargestMotion)) {
+    found.uncertainty = kSteps;
     return found;
   }
   if (!have_largest(field, 0, over_place) || !have_largest(field, kAxes, over_velocity)) {

@@ -66,9 +66,12 @@ struct Enclosed {
   Interval value;
   std::array<Interval, kVariables> slope{};
   bool jumps = false;  // a truth or a sign that is not decided in the box
+  bool fails = false;  // a part of it may be no finite number, and then the whole counts as 0
+  bool moves = false;  // it asks for the distance or the speed
 };
 
 const Enclosed kUnknown{kAny, {kAny, kAny}};
+const Enclosed kFailing{kAny, {kAny, kAny}, false, true};
 
 /// f of u, with what f' lies within.
 Enclosed chain(const Enclosed& u, const Interval& value, const Interval& derivative) {
@@ -102,18 +105,55 @@ class Evaluation {
     stack.reserve(engine::kMaxStack);
     for (const Instruction& instruction : program.code) {
       const std::size_t taken = engine::operand_count(instruction.operation);
-      const Enclosed result = apply(instruction, stack.data() + (stack.size() - taken));
+      const Enclosed result = result_of(instruction, stack.data() + (stack.size() - taken), taken);
       stack.resize(stack.size() - taken);
       stack.push_back(result);
-      if (stack.back().jumps || is_of_variables_alone(stack.back())) continue;
-      if (!std::isfinite(size_of(stack.back().value)) && box_is_finite()) stack.back() = kUnknown;
     }
-    return stack.front().jumps ? Enclosed{stack.front().value, {kAny, kAny}} : stack.front();
+    const Enclosed& whole = stack.front();
+    fails_ = whole.fails;
+    return whole.jumps || whole.fails ? Enclosed{whole.value, {kAny, kAny}} : whole;
   }
   /// True if it was not decided in the box which of two values is taken.
   bool is_undecided() const { return is_undecided_; }
+  /// True if the value may be no finite number somewhere in the box.
+  bool fails() const { return fails_; }
 
  private:
+  /// What an instruction makes of its operands, and how it follows the link.
+  Enclosed result_of(const Instruction& instruction, const Enclosed* operands, std::size_t taken) {
+    Enclosed f = apply(instruction, operands);
+    const bool is_quantity = instruction.operation == Operation::kQuantity;
+    f.moves = is_quantity ? is_of_motion(instruction.quantity)
+                          : std::any_of(operands, operands + taken,
+                                        [](const Enclosed& operand) { return operand.moves; });
+    if (!f.moves) {  // whatever the variables are, it is one number over the box
+      f.slope = {};
+      f.jumps = false;
+    }
+    if (f.jumps || f.fails || std::isfinite(size_of(f.value)) || !box_is_finite()) return f;
+    constexpr double kOverflow = std::numeric_limits<double>::infinity();
+    const bool has_no_number = f.value.low == kOverflow || f.value.high == -kOverflow;
+    if (is_of_variables_alone(f) && !has_no_number) return f;
+    const bool moves = f.moves;
+    f = has_no_number || (moves && !is_quantity) ? kFailing : kUnknown;
+    f.moves = moves;
+    if (!moves) f.slope = {};
+    return f;
+  }
+
+  bool is_of_motion(Quantity which) const {
+    switch (which) {
+      case Quantity::kDistance:
+      case Quantity::kElongation:
+      case Quantity::kSpeed:
+        return true;
+      case Quantity::kRestLength:
+        return box_.rest_moves;
+      default:
+        return false;
+    }
+  }
+
   bool box_is_finite() const {
     return std::isfinite(size_of(box_.distance)) && std::isfinite(size_of(box_.speed));
   }
@@ -173,6 +213,11 @@ class Evaluation {
     return both;
   }
 
+  /// One of two, the same in all of the box: variables alone choose.
+  static Enclosed one_throughout(const Enclosed& u, const Enclosed& v) {
+    return joined(u, v, hull(u.value, v.value));
+  }
+
   Enclosed multiply(const Enclosed& u, const Enclosed& v) {
     if (u.jumps && v.jumps) return {u.value * v.value, {}, true};
     if (v.jumps) return multiply(v, u);
@@ -190,6 +235,9 @@ class Evaluation {
     return f;
   }
 
+  /// A truth of what may be no number: nothing is certain of it.
+  static Enclosed failing_truth() { return {{0.0, 1.0}, {}, true, true}; }
+
   static Enclosed truth(bool certainly, bool certainly_not) {
     if (certainly) return {{1.0, 1.0}};
     if (certainly_not) return {{0.0, 0.0}};
@@ -198,7 +246,7 @@ class Evaluation {
 
   static Enclosed power(const Enclosed& u, const Enclosed& v) {
     const double n = v.value.low;
-    if (!is_point(v.value) || u.value.low < 0.0) return kUnknown;
+    if (!is_point(v.value) || u.value.low < 0.0) return kFailing;
     if (n == 0.0) return {{1.0, 1.0}};
     const auto power_of_u = [&](double exponent) {
       const double low = std::pow(u.value.low, exponent);
@@ -208,8 +256,15 @@ class Evaluation {
     return chain(u, power_of_u(n), Interval{n, n} * power_of_u(n - 1.0));
   }
 
+  /// True if a function of one finite number may be none, but for overflow.
+  static bool may_fail(Operation operation) {
+    return operation == Operation::kSqrt || operation == Operation::kLog ||
+           operation == Operation::kWholePower;
+  }
+
   Enclosed one(const Instruction& instruction, const Enclosed& u) const {
     const Interval& x = u.value;
+    if (u.fails) return instruction.operation == Operation::kNot ? failing_truth() : kFailing;
     switch (instruction.operation) {
       case Operation::kNegate: {
         Enclosed f = chain(u, -x, {-1.0, -1.0});
@@ -221,16 +276,16 @@ class Evaluation {
       default:
         break;
     }
-    if (u.jumps) return kUnknown;
+    if (u.jumps) return may_fail(instruction.operation) ? kFailing : kUnknown;
     switch (instruction.operation) {
       case Operation::kAbs:
         if (x.low >= 0.0) return u;
         if (x.high <= 0.0) return chain(u, -x, {-1.0, -1.0});
         return chain(u, {0.0, size_of(x)}, {-1.0, 1.0});
       case Operation::kSqrt:
-        if (x.low < 0.0) return kUnknown;
+        if (x.low < 0.0) return kFailing;
         return chain(u, {std::sqrt(x.low), std::sqrt(x.high)},
-                     {0.5 / std::sqrt(x.high), 0.5 / std::sqrt(x.low)});
+                     {0.5 / std::sqrt(x.high), 0.5 / std::sqrt(std::abs(x.low))});  // of -0 as well
       case Operation::kSign:
         if (x.low > 0.0) return {{1.0, 1.0}};
         if (x.high < 0.0) return {{-1.0, -1.0}};
@@ -240,7 +295,7 @@ class Evaluation {
         return chain(u, e, e);
       }
       case Operation::kLog:
-        if (x.low <= 0.0) return kUnknown;
+        if (x.low <= 0.0) return kFailing;
         return chain(u, {std::log(x.low), std::log(x.high)}, inverse(x));
       case Operation::kSin:
         return chain(u, of_wave(x, [](double v) { return std::sin(v); }),
@@ -256,7 +311,7 @@ class Evaluation {
       case Operation::kWholePower: {
         const int n = static_cast<int>(instruction.constant);
         if (n == 0) return {{1.0, 1.0}};
-        if (n < 0 && holds_zero(x)) return kUnknown;
+        if (n < 0 && holds_zero(x)) return kFailing;
         const double factor = n;
         return chain(u, whole_power(x, n), Interval{factor, factor} * whole_power(x, n - 1));
       }
@@ -277,20 +332,33 @@ class Evaluation {
     if (count == 1) return one(instruction, operands[0]);
     if (instruction.operation == Operation::kSelect) {
       const Interval& which = operands[0].value;
+      if (operands[0].fails) return kFailing;
       if (!holds_zero(which)) return operands[1];
       if (is_point(which)) return operands[2];
-      return operands[1].jumps || operands[2].jumps ? kUnknown : either(operands[1], operands[2]);
+      if (operands[1].fails || operands[2].fails) return kFailing;
+      if (operands[1].jumps || operands[2].jumps) return kUnknown;
+      return operands[0].moves ? either(operands[1], operands[2])
+                               : one_throughout(operands[1], operands[2]);
     }
     return two(instruction.operation, operands[0], operands[1]);
+  }
+
+  static bool is_truth(Operation operation) {
+    return operation >= Operation::kLess && operation <= Operation::kOr;
   }
 
   Enclosed two(Operation operation, const Enclosed& u, const Enclosed& v) {
     const Interval& x = u.value;
     const Interval& y = v.value;
-    const bool x_holds = !holds_zero(x);
-    const bool y_holds = !holds_zero(y);
-    const bool x_fails = holds_zero(x) && is_point(x);
-    const bool y_fails = holds_zero(y) && is_point(y);
+    const bool x_is_true = !u.fails && !holds_zero(x);
+    const bool y_is_true = !v.fails && !holds_zero(y);
+    const bool x_is_false = !u.fails && holds_zero(x) && is_point(x);
+    const bool y_is_false = !v.fails && holds_zero(y) && is_point(y);
+    if (u.fails || v.fails) {
+      if (operation == Operation::kAnd && (x_is_false || y_is_false)) return truth(false, true);
+      if (operation == Operation::kOr && (x_is_true || y_is_true)) return truth(true, false);
+      return is_truth(operation) ? failing_truth() : kFailing;
+    }
     switch (operation) {
       case Operation::kLess:
         return truth(x.high < y.low, x.low >= y.high);
@@ -307,15 +375,18 @@ class Evaluation {
         return truth(x.high < y.low || x.low > y.high,
                      is_point(x) && is_point(y) && x.low == y.low);
       case Operation::kAnd:
-        return truth(x_holds && y_holds, x_fails || y_fails);
+        return truth(x_is_true && y_is_true, x_is_false || y_is_false);
       case Operation::kOr:
-        return truth(x_holds || y_holds, x_fails && y_fails);
+        return truth(x_is_true || y_is_true, x_is_false && y_is_false);
       case Operation::kMultiply:
         return multiply(u, v);
       default:
         break;
     }
-    if (u.jumps || v.jumps) return kUnknown;
+    if (u.jumps || v.jumps) {
+      const bool may_fail = operation == Operation::kDivide || operation == Operation::kPower;
+      return may_fail ? kFailing : kUnknown;
+    }
     switch (operation) {
       case Operation::kMin:
         if (x.high <= y.low) return u;
@@ -330,7 +401,7 @@ class Evaluation {
       case Operation::kSubtract:
         return {x - y, {u.slope[0] - v.slope[0], u.slope[1] - v.slope[1]}};
       case Operation::kDivide: {
-        if (holds_zero(y)) return kUnknown;
+        if (holds_zero(y)) return kFailing;
         const Interval part = inverse(y);
         return multiply(u, chain(v, part, -(part * part)));
       }
@@ -347,6 +418,7 @@ class Evaluation {
 
   const LinkBox& box_;
   bool is_undecided_ = false;
+  bool fails_ = false;
 };
 
 /// The largest of one slope over the box, or of what is read off it.
@@ -401,12 +473,15 @@ double extent_of(const Interval& interval) {
 /// Looks along a variable for a place where a program steps from one value to another.
 class StepSearch {
  public:
-  /// @param smallest  what is left of the way where the two values are compared
-  StepSearch(const engine::Program& program, Interval LinkBox::*variable, double smallest)
+  /// @param smallest   what is left of the way where the two values are compared
+  /// @param variables  values of the variables of the network; those of the box are the same
+  StepSearch(const engine::Program& program, Interval LinkBox::*variable, double smallest,
+             const std::vector<double>& variables)
       : program_(program),
         variable_(variable),
         slope_(variable == &LinkBox::distance ? 0 : 1),
-        smallest_(smallest) {}
+        smallest_(smallest),
+        variables_(variables) {}
 
   /// @param line  all but the variable are points
   bool finds_in(LinkBox line) const {
@@ -430,26 +505,50 @@ class StepSearch {
     return false;
   }
 
+  /// True if a value ends in a step where no finite number follows, between two of some places.
+  bool finds_end_in(const LinkBox& line, int places) const {
+    const Interval& way = line.*variable_;
+    const auto place = [&](int n) { return way.low + extent_of(way) * n / places; };
+    bool was_finite = is_finite_at(line, way.low);
+    for (int n = 1; n <= places; ++n) {
+      const bool is_finite = is_finite_at(line, place(n));
+      if (is_finite != was_finite && ends_in_a_step(line, {place(n - 1), place(n)}, was_finite))
+        return true;
+      was_finite = is_finite;
+    }
+    return false;
+  }
+
  private:
   /// The value and the slope at a place.
   struct Place {
-    double value;
-    double slope;  // 0 where a condition just changes
+    double value;  // 0 for what is no finite number
+    double
+        slope;  // 0 where none is known: where a condition just changes, or a part is no finite number
   };
-  Place at(LinkBox line, double place) const {
+  double value_at(const LinkBox& line, double place) const {
     engine::LinkQuantities now{};
-    line.*variable_ = {place, place};
-    const double distance = line.distance.low;
+    const double distance = variable_ == &LinkBox::distance ? place : line.distance.low;
+    const double speed = variable_ == &LinkBox::speed ? place : line.speed.low;
     now[static_cast<std::size_t>(Quantity::kDistance)] = distance;
     now[static_cast<std::size_t>(Quantity::kElongation)] = distance - line.rest_length;
-    now[static_cast<std::size_t>(Quantity::kSpeed)] = line.speed.low;
+    now[static_cast<std::size_t>(Quantity::kSpeed)] = speed;
     now[static_cast<std::size_t>(Quantity::kMassA)] = line.mass_a.low;
     now[static_cast<std::size_t>(Quantity::kMassB)] = line.mass_b.low;
     now[static_cast<std::size_t>(Quantity::kRestLength)] = line.rest_length;
+    return engine::value_of(program_, now, nullptr, 0.0, variables_.data());
+  }
+  bool is_finite_at(const LinkBox& line, double place) const {
+    return std::isfinite(value_at(line, place));
+  }
+  Place at(LinkBox line, double place) const {
+    const double value = value_at(line, place);
+    if (!std::isfinite(value)) return {0.0, 0.0};
+    line.*variable_ = {place, place};
     Evaluation evaluation(line);
     const Enclosed here = evaluation.enclose(program_);
-    return {engine::value_of(program_, now),
-            evaluation.is_undecided() ? 0.0 : size_of(here.slope[slope_])};
+    const bool is_known = !evaluation.is_undecided() && !evaluation.fails();
+    return {value, is_known ? size_of(here.slope[slope_]) : 0.0};
   }
   /// True if the values at both ends are farther apart than the slopes there make them.
   bool steps_between_the_ends_of(const LinkBox& line) const {
@@ -462,25 +561,83 @@ class StepSearch {
                           kRounding * (std::abs(low.value) + std::abs(high.value));
     return std::abs(high.value - low.value) > change;
   }
+  /// @param part  one end alone is finite
+  bool ends_in_a_step(LinkBox line, Interval part, bool low_is_finite) const {
+    while (extent_of(part) > smallest_) {
+      const double middle = 0.5 * (part.low + part.high);
+      if (!(middle > part.low && middle < part.high)) break;
+      (is_finite_at(line, middle) == low_is_finite ? part.low : part.high) = middle;
+    }
+    line.*variable_ = part;
+    return steps_between_the_ends_of(line);
+  }
 
   const engine::Program& program_;
   Interval LinkBox::*variable_;
   std::size_t slope_;
   double smallest_;
+  const std::vector<double>& variables_;
 };
 
+constexpr double kSmallestPart = 1e-9;  // of the part of a box that is resolved
+
+/// True if a search along one of the lines finds what it looks for.
 /// @param across  the other variable
 /// @param within  its places, and the way that is resolved
-bool has_step_along(Interval LinkBox::*variable, Interval LinkBox::*across,
-                    const engine::Program& program, const LinkBox& box, const LinkBox& within) {
-  constexpr double kSmallest = 1e-9;
+template <class Finds>
+bool finds_along(Interval LinkBox::*variable, Interval LinkBox::*across,
+                 const engine::Program& program, const LinkBox& box, const LinkBox& within,
+                 const std::vector<double>& variables, const Finds& finds) {
   constexpr int kLines = 9;
-  const StepSearch search(program, variable, kSmallest * extent_of(within.*variable));
+  const StepSearch search(program, variable, kSmallestPart * extent_of(within.*variable),
+                          variables);
   for (int l = 0; l < kLines; ++l) {
     LinkBox line = box;
     const double place = (within.*across).low + (l + 0.5) / kLines * extent_of(within.*across);
     line.*across = {place, place};
-    if (search.finds_in(line)) return true;
+    if (finds(search, line)) return true;
+  }
+  return false;
+}
+
+/// How many variables a program may ask for: the largest number and one more.
+std::size_t variables_asked_by(const engine::Program& program) {
+  std::size_t count = 0;
+  for (const Instruction& instruction : program.code) {
+    if (instruction.operation == Operation::kVariable)
+      count = std::max<std::size_t>(count, instruction.slot + 1);
+  }
+  return count;
+}
+
+constexpr std::size_t kPins = 5;
+
+/// One value for each variable, within what it lies in.
+std::vector<double> pinned_variables(std::size_t count, const LinkBox& box, std::size_t turn) {
+  constexpr std::array<double, kPins> kValues{0.5, -1.0, 1e3, 2.0, -1e3};
+  std::vector<double> values;
+  for (std::size_t slot = 0; slot < count; ++slot) {
+    const Interval range = box.variables == nullptr ? kAny : box.variables->at(slot);
+    values.push_back(std::clamp(kValues[(turn + slot) % kPins], range.low, range.high));
+  }
+  return values;
+}
+
+/// True if a search along the distance or the speed finds what it looks for, at some values of the variables.
+template <class Finds>
+bool finds_in_box(const engine::Program& program, const LinkBox& box, const LinkBox& within,
+                  const Finds& finds) {
+  const std::size_t count = variables_asked_by(program);
+  for (std::size_t turn = 0; turn < (count > 0 ? kPins : 1); ++turn) {
+    const std::vector<double> values = pinned_variables(count, box, turn);
+    std::vector<Interval> points;
+    for (const double value : values) points.push_back({value, value});
+    LinkBox pinned = box;
+    pinned.variables = &points;
+    if (finds_along(&LinkBox::distance, &LinkBox::speed, program, pinned, within, values, finds) ||
+        finds_along(&LinkBox::speed, &LinkBox::distance, program, pinned, within, values, finds)) {
+      return true;
+    }
   }
   return false;
 }
@@ -504,9 +661,39 @@ bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox&
                 engine::is_known_to_laws(program));
   Evaluation whole(box);
   whole.enclose(program);
-  if (!whole.is_undecided() || engine::asks_for_variable(program)) return false;
-  return has_step_along(&LinkBox::distance, &LinkBox::speed, program, box, within) ||
-         has_step_along(&LinkBox::speed, &LinkBox::distance, program, box, within);
+  if (!whole.is_undecided()) return false;
+  return finds_in_box(program, box, within, [](const StepSearch& search, const LinkBox& line) {
+    return search.finds_in(line);
+  });
+}
+
+bool ends_in_a_step(const engine::Program& program, const LinkBox& box) {
+  CORDIS_ASSERT(engine::is_well_formed(program, kAnyVariables) &&
+                engine::is_known_to_laws(program));
+  constexpr int kPlaces = 200;
+  Evaluation whole(box);
+  whole.enclose(program);
+  if (!whole.fails()) return false;
+  return finds_in_box(program, box, box, [](const StepSearch& search, const LinkBox& line) {
+    return search.finds_end_in(line, kPlaces);
+  });
+}
+
+bool is_undecided_or_fails(const engine::Program& program, const LinkBox& box) {
+  Evaluation evaluation(box);
+  evaluation.enclose(program);
+  return evaluation.is_undecided() || evaluation.fails();
+}
+
+bool has_step_on_line(const engine::Program& program, const LinkBox& line,
+                      Interval LinkBox::*variable) {
+  constexpr int kPlaces = 1;
+  std::vector<double> values;
+  if (line.variables != nullptr) {
+    for (const Interval& value : *line.variables) values.push_back(value.low);
+  }
+  const StepSearch search(program, variable, kSmallestPart * extent_of(line.*variable), values);
+  return search.finds_end_in(line, kPlaces) || search.finds_in(line);
 }
 
 double flattest_slope(const engine::Program& program, const LinkBox& box, double largest) {

@@ -35,7 +35,8 @@ struct LinkBox {
 };
 
 /// No tangent of the program in a box is above these: over the distance, and over the speed.
-/// Infinite where it jumps, has no value, or is not known to have a largest slope.
+/// Infinite where a part of it may be no finite number, which counts as 0, where it jumps, or where no largest slope is
+/// known. A step between two values that meet in a wide box is left to has_step().
 struct SteepestSlopes {
   double over_distance = 0.0;
   double over_speed = 0.0;
@@ -46,12 +47,26 @@ struct SteepestSlopes {
 SteepestSlopes steepest_slopes(const engine::Program& program, const LinkBox& box);
 
 /// True if the program has a step where one of its conditions changes: on lines over the distance at 9 speeds, and over
-/// the speed at 9 distances. The values at both sides of the place are compared. One of about 1e-9 of what the slopes
-/// make of `within` is not seen, nor one that ends between two lines.
+/// the speed at 9 distances, at 5 values of each variable. The values at both sides of the place are compared. One of
+/// about 1e-9 of what the slopes make of `within` is not seen, nor one that ends between two lines.
 /// @param box     where
 /// @param within  its part that is resolved to 1e-9, and through which the lines go
-/// False of a program that asks for variables of the network. Precondition: well-formed, of quantities known to laws.
+/// Where variables alone choose between two values, it is none.
+/// Precondition: well-formed, of quantities known to laws.
 bool has_step(const engine::Program& program, const LinkBox& box, const LinkBox& within);
+
+/// True if a finite value other than 0 ends where the program is no finite number, which counts as 0: found on the same lines,
+/// between two of 200 places. The slopes of such a program are infinite anyway. Precondition: as of has_step().
+bool ends_in_a_step(const engine::Program& program, const LinkBox& box);
+
+/// True if it is not decided in a box which of two values is taken, or whether a value is a finite number.
+bool is_undecided_or_fails(const engine::Program& program, const LinkBox& box);
+
+/// True if the program has a step on a line, as has_step() or ends_in_a_step() find it.
+/// @param line  a box of points, its variables as well, but for one variable
+/// @param variable  that one: &LinkBox::distance or &LinkBox::speed, resolved to 1e-9
+bool has_step_on_line(const engine::Program& program, const LinkBox& line,
+                      Interval LinkBox::*variable);
 
 /// No tangent of the program over the distance in a box is below this, found likewise with a tenth
 /// of the bisections, to 2 % of this largest slope; -infinity where SteepestSlopes has infinity.

@@ -60,6 +60,13 @@ LinkBox box_within(const Stretch& stretch, double rest_length, double speed, con
   return box;
 }
 
+/// Why no largest slope of an expression is known in a box.
+const char* why_without_a_slope(const engine::Program& program, const LinkBox& box) {
+  if (ends_in_a_step(program, box)) return kJumps;
+  if (!engine::asks_for_variable(program)) return kNoLargestSlope;
+  return has_step(program, box, box) ? kJumps : kUnboundedVariable;
+}
+
 /// Adds the slopes of an expression over the distances and speeds that can be reached.
 /// @param speed  of its ends, either way [m/s]
 void add_expression(const engine::Program& program, const Stretch& stretch, double rest_length,
@@ -81,7 +88,7 @@ void add_expression(const engine::Program& program, const Stretch& stretch, doub
   const SteepestSlopes far = steepest_slopes(program, box);
   if (!std::isfinite(near.over_distance) || !std::isfinite(near.over_speed)) {
     slope.bounded = false;
-    slope.uncertainty = engine::asks_for_variable(program) ? kUnboundedVariable : kNoLargestSlope;
+    slope.uncertainty = why_without_a_slope(program, reached);
     return;
   }
   if (has_step(program, reached, reached)) {
