@@ -51,6 +51,7 @@ void TopicListener::receive(const dds::RawTopic& topic, const dds::RawSample& sa
     message.source_nsec = sample.source_nsec;
     message.reception_nsec = sample.reception_nsec;
     message.sequence = sample.sequence;
+    message.missing = sample.missing;
     message.writer = sample.writer;
     message.size = sample.size;
     if (with_bytes_) message.bytes.assign(sample.data, sample.data + sample.size);

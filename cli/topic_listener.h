@@ -24,6 +24,7 @@ struct ReceivedMessage {
   std::int64_t source_nsec = 0;
   std::int64_t reception_nsec = 0;
   std::uint64_t sequence = 0;
+  std::uint64_t missing = 0;  ///< numbers before it that never came: of a dds::RawSample
   dds::WriterId writer{};
 };
 

@@ -20,14 +20,12 @@ struct RecordedWriter {
   const dds::WriterId id;
   const std::uint32_t number;  ///< its place in the list, from 0
 
-  std::uint64_t last_sequence = 0;         ///< belongs to the threads of DDS
   std::atomic<std::uint64_t> messages{0};  ///< received messages
   std::atomic<std::uint64_t> bytes{0};     ///< their size
   std::atomic<std::uint64_t> dropped{0};   ///< received messages that found no room or disk
   std::atomic<std::uint64_t> lost{0};      ///< messages that never came, by its numbers
   /// Numbers before the first message that came: written before the reader was found. 0 for a topic
-  /// that is kept for late joiners, whose newest message alone is wanted, and for an exclusive one,
-  /// of which DDS keeps messages back.
+  /// that is kept for late joiners, whose newest message alone is wanted.
   std::atomic<std::uint64_t> before{0};
 
   std::uint16_t channel = 0;     ///< belongs to the thread of the file; 0: not in it yet

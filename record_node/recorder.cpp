@@ -75,12 +75,8 @@ struct Recorder::Impl {
   /// Called from threads of DDS, one at a time for a topic.
   void take(const dds::RawTopic& topic, const dds::RawSample& sample) {
     RecordedWriter* const writer = writer_of(topic, sample.writer);
-    // Where a stronger writer speaks, DDS keeps back what others say.
-    const bool has_gap = writer->last_sequence != 0 && sample.sequence > writer->last_sequence + 1;
-    if (has_gap && !topic.exclusive) writer->lost += sample.sequence - writer->last_sequence - 1;
-    if (writer->last_sequence == 0 && !topic.transient_local && !topic.exclusive)
-      writer->before = sample.sequence - std::min<std::uint64_t>(sample.sequence, 1);
-    writer->last_sequence = sample.sequence;
+    if (!sample.is_first) writer->lost += sample.missing;
+    if (sample.is_first && !topic.transient_local) writer->before += sample.missing;
     ++writer->messages;
     writer->bytes += sample.size;
     const QueuedSample queued{.channel = writer->number,

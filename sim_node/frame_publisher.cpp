@@ -66,6 +66,7 @@ FramePublisher::~FramePublisher() {
   ending_.store(true);
   wake_.release();
   thread_.join();
+  if (keeps_frames_) frame_writer_.finish();
   signal_writer_.finish();
   event_writer_.finish();
 }
@@ -86,6 +87,16 @@ void FramePublisher::write_signals() {
   if (!is_paced_ || signals_.batch() % kBatchesAhead != 0) return;
   const auto at_most = has_stopped_reader_ ? kPauseBesideStopped : kLongestPause;
   has_stopped_reader_ = !signal_writer_.wait_until_acknowledged(at_most);
+}
+
+/// DDS keeps one frame: the next one may replace it where it has not arrived.
+void FramePublisher::write_frame() {
+  const bool is_due = !has_stopped_watcher_ || frame_.frame() % kBatchesAhead == 0;
+  if (keeps_frames_ && is_due) {
+    const auto at_most = has_stopped_watcher_ ? kPauseBesideStopped : kLongestPause;
+    has_stopped_watcher_ = !frame_writer_.wait_until_acknowledged(at_most);
+  }
+  count(frame_writer_.write(frame_));
 }
 
 bool FramePublisher::submit(FrameStore& store, const engine::World& world, double simulated_s,
@@ -129,7 +140,7 @@ void FramePublisher::count(bool written) noexcept {
 void FramePublisher::publish_frame(const FrameShape& shape, const FrameBuffer& buffer) {
   put_frame(shape, buffer, frame_);
   frame_.frame(frame_.frame() + 1);
-  count(frame_writer_.write(frame_));
+  write_frame();
 }
 
 void FramePublisher::publish_signals(const FrameShape& shape, const FrameBuffer& buffer) {

@@ -38,6 +38,11 @@ class FramePublisher {
   bool wait_for_signal_reader(const std::string& node, bool is_paced,
                               std::chrono::milliseconds at_most);
 
+  /// Before the loop begins, without real time: a recorder gets every frame. Each waits until readers
+  /// that ask for all have the one before. One that has stopped holds the scene once for 1 s, then for
+  /// 0.1 s in eight frames.
+  void keep_every_frame() noexcept { keeps_frames_ = true; }
+
   /// True if a node reads scene/signals.
   bool has_signal_reader(const std::string& node) const {
     return signal_writer_.has_reader_of(node);
@@ -71,6 +76,7 @@ class FramePublisher {
   void loop();
   void count(bool written) noexcept;
   void write_signals();
+  void write_frame();
   void publish_frame(const FrameShape& shape, const FrameBuffer& buffer);
   void publish_signals(const FrameShape& shape, const FrameBuffer& buffer);
   void publish_step_signals(const FrameShape& shape, const FrameBuffer& buffer);
@@ -86,6 +92,8 @@ class FramePublisher {
 
   bool is_paced_ = false;                  // set before the first frame
   bool has_stopped_reader_ = false;        // of scene/signals, which takes nothing
+  bool keeps_frames_ = false;              // set before the first frame
+  bool has_stopped_watcher_ = false;       // of scene/frame, which takes nothing
   const FrameStore* submitted_ = nullptr;  // the thread's while busy_
   std::atomic<bool> busy_{false};
   std::atomic<std::uint64_t> frames_left_out_{0};

@@ -38,7 +38,7 @@ class SceneLoop {
   /// Before the first turn: FramePublisher::wait_for_signal_reader(), at most 5 s.
   void wait_for_signal_reader(const std::string& node);
   /// Before the first turn: waits until a node reads the answers to devices and the signals that
-  /// this scene has, at most 5 s.
+  /// this scene has, at most 5 s. Without real time it gets every frame.
   void wait_for_recorder(const std::string& node);
 
   /// True when a stop is asked for, the scene diverged, or the duration is over.

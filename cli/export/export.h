@@ -25,9 +25,10 @@ struct ExportResult {
   std::uint64_t row_count = 0;
   std::uint64_t event_count = 0;
   double sound_s = 0.0;
-  double sound_peak = 0.0;          ///< 1 is full scale
-  std::vector<std::string> notes;   ///< a sentence each
-  std::vector<std::string> losses;  ///< what is not in the files, a sentence each
+  double sound_peak = 0.0;            ///< 1 is full scale
+  std::vector<std::string> notes;     ///< a sentence each
+  std::vector<std::string> warnings;  ///< likewise, of what was asked: for stderr
+  std::vector<std::string> losses;    ///< what is not in the files, a sentence each
 };
 
 /// Makes all files first, then reads the take.

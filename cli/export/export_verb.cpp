@@ -55,6 +55,7 @@ int run(const ExportWords& words) {
   const ExportResult result = export_take(*take, options);
   const bool is_piped = options.csv_file == "-" || options.events_file == "-";
   node::print_text(is_piped ? stderr : stdout, report_of(result, options));
+  for (const std::string& warning : result.warnings) node::print_text(stderr, warning + "\n");
   for (const std::string& loss : result.losses) node::print_text(stderr, "lost: " + loss + "\n");
   return result.losses.empty() ? kSuccess : kLoss;
 }
@@ -73,9 +74,11 @@ void add_export_verb(CommandLine& line) {
   verb.option("--duration", "TIME", words->duration, "Not more than this of its time");
   verb.examples(
       "Columns are those of `cordis simulate`: the time, the signals, the position and the force\n"
-      "of each axis of a device, and the MATs of --mat, with their units in the header. `nan`\n"
-      "stands where the take has no value; MATs have one by frame. With --every step the table\n"
-      "has the signals with `rate: step` alone. Missing sound is silent.\n"
+      "of each axis of a device, and the MATs of --mat, with their units in the header. The force\n"
+      "is the answer of the scene, before the guard of the device: its `trace` has the force at\n"
+      "the motor. `nan` stands where the take has no value; MATs have one by frame. With --every\n"
+      "step the table has the signals with `rate: step` alone. With a time each row is the first\n"
+      "of the take at or after a multiple of it. Missing sound is silent.\n"
       "Exit code: 0 all well, 1 disk full, 2 bad file or command line, 3 done, but something is\n"
       "missing: each loss has a line on stderr.\n\n"
       "Examples:\n"

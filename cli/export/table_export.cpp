@@ -60,6 +60,7 @@ class TableExport {
       throw UsageError("the scene '" + scene.description.name() +
                        "' has neither signals nor devices; ask for positions with --mat NAME");
     row_.resize(columns_.size());
+    if (choice_.span_s > 0.0) record_uneven_span(options.every);
     if (choice_.span_s > 0.0) last_number_ = number_at(options.start_s);
     files_ = make_table_files(options, columns_);
   }
@@ -89,6 +90,17 @@ class TableExport {
  private:
   void add_columns(const std::vector<Column>& more) {
     columns_.insert(columns_.end(), more.begin(), more.end());
+  }
+
+  /// Rows are those of the take: a span between two of them is none that a table can have.
+  void record_uneven_span(const std::string& every) {
+    const double ticks = choice_.span_s * scene_.description.gesture_rate_hz();
+    if (ticks >= 0.999 && std::abs(ticks - std::round(ticks)) < 1e-3) return;
+    note_ = fmt::format(
+        "--every {} is no whole number of gesture periods of {:.6g} s: each row is the first of "
+        "the "
+        "take at or after its time",
+        every, 1.0 / scene_.description.gesture_rate_hz());
   }
 
   /// How many spans of time are over.
@@ -138,6 +150,7 @@ class TableExport {
   }
 
   void report(ExportResult& result) {
+    if (!note_.empty()) result.warnings.push_back(note_);
     if (row_count_ == 0) {
       result.losses.push_back("the take has no row of this table");
     } else if (!signals_.columns().empty() && !has_signal_row_) {
@@ -182,6 +195,7 @@ class TableExport {
   bool has_signal_ = false;
   bool has_frame_ = false;
   double last_number_ = 0.0;
+  std::string note_;
   bool has_signal_row_ = false;
   std::uint64_t first_step_ = 0;
   DeviceRows::Missing missing_;

@@ -13,14 +13,12 @@ void Traffic::add(const ReceivedMessage& message) {
   } else {
     ++writer.messages;
     writer.bytes += message.size;
-    if (message.sequence > writer.sequence + 1 && !message.topic.exclusive)
-      missing_ += message.sequence - writer.sequence - 1;
+    missing_ += message.missing;
     const double interval = static_cast<double>(message.reception_nsec - writer.last_nsec) * 1e-9;
     shortest_s_ = intervals_ == 0 ? interval : std::min(shortest_s_, interval);
     longest_s_ = std::max(longest_s_, interval);
     ++intervals_;
   }
-  writer.sequence = message.sequence;
   writer.last_nsec = message.reception_nsec;
 }
 

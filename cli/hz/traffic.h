@@ -28,7 +28,6 @@ class Traffic {
 
  private:
   struct Writer {
-    std::uint64_t sequence = 0;
     std::int64_t last_nsec = 0;
     std::int64_t since_nsec = 0;  // the rate counts from here
     std::uint64_t messages = 0;   // after that

@@ -118,6 +118,7 @@ ResimResult resimulate(const ResimOptions& options) {
   result.computed = check.computed();
   result.loss = take.loss();
   result.other_lives = take.other_epochs();
+  result.left_out = take.other_frames();
   if (!resimulation.gap().empty()) {
     result.loss += (result.loss.empty() ? "" : "; ") + resimulation.gap();
   } else if (result.findings.beyond > 0) {
@@ -175,8 +176,11 @@ std::string text_of(const ResimResult& result, const ResimOptions& options) {
     text += differences_of(findings);
   }
   if (result.other_lives > 0) {
-    text += "sim_node began again " + config::count_text(result.other_lives, "time") +
-            " in this take: what it did then is left out\n";
+    text += fmt::format(
+        "sim_node began again {} in this take: {} of {} frames are compared, and what it did then "
+        "is left out\n",
+        config::count_text(result.other_lives, "time"), findings.frames,
+        findings.frames + findings.unmatched + findings.beyond + result.left_out);
   }
   if (!result.failure.empty()) text += result.failure + "\n";
   if (!result.loss.empty()) text += "the take is not complete: " + result.loss + "\n";

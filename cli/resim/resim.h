@@ -39,6 +39,7 @@ struct ResimResult {
   double played_s = 0.0;          ///< simulated, of all scenes
   double took_s = 0.0;            ///< wall time of the steps
   std::uint64_t other_lives = 0;  ///< lives of sim_node in the take that are left out
+  std::uint64_t left_out = 0;     ///< frames of them
   std::string loss;               ///< what the take lacks; empty: nothing
   std::string failure;            ///< the scene diverged; empty: it did not
 

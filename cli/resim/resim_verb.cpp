@@ -24,14 +24,14 @@ struct ResimWords {
 
 int exit_code_of(const ResimResult& result, bool expects) {
   if (expects) {
-    const bool holds =
-        result.by == FrameCheck::By::kHash && result.is_equal() && result.loss.empty();
+    const bool holds = result.by == FrameCheck::By::kHash && result.is_equal() &&
+                       result.loss.empty() && result.other_lives == 0;
     return holds ? kSuccess : kFailure;
   }
   if (!result.failure.empty() && !result.compares_models()) return kFailure;
   if (!result.compares_models() && result.findings.frames > 0 && !result.is_equal())
     return kFailure;
-  if (!result.loss.empty() || result.findings.frames == 0) return kLoss;
+  if (!result.loss.empty() || result.findings.frames == 0 || result.other_lives > 0) return kLoss;
   return kSuccess;
 }
 
@@ -106,7 +106,7 @@ void add_resim_verb(CommandLine& line) {
       "and the forces on ports differ.\n"
       "Exit code: 0 equal or compared, 1 it differs, 2 a file or a word is wrong, 3 the take "
       "lacks\n"
-      "something.\n\n"
+      "something, or sim_node began again in it: a part is not compared.\n\n"
       "Examples:\n"
       "  cordis resim take.mcap\n"
       "  cordis resim take.mcap --integrator leapfrog\n"

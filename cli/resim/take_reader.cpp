@@ -3,6 +3,7 @@
 
 #include <set>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "idl/topics.h"
@@ -61,6 +62,7 @@ bool TakeReader::read(mcap::MessageCursor& cursor, Message& message) {
       continue;
     }
     if (message.epoch() == epoch_) return true;
+    if constexpr (std::is_same_v<Message, msg::SceneFrame>) ++other_frames_;
   }
   return false;
 }

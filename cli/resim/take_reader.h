@@ -32,6 +32,8 @@ class TakeReader {
   std::uint64_t epoch() const noexcept { return epoch_; }
   /// Other lives of sim_node in the take, which are left out.
   std::size_t other_epochs() const noexcept { return other_epochs_; }
+  /// Frames of those that were passed over so far.
+  std::uint64_t other_frames() const noexcept { return other_frames_; }
   /// Why not everything could be read; empty when it could.
   std::string loss() const;
 
@@ -49,6 +51,7 @@ class TakeReader {
   std::uint64_t epoch_ = 0;
   std::uint64_t newest_frame_ = 0;
   std::size_t other_epochs_ = 0;
+  std::uint64_t other_frames_ = 0;
   std::uint64_t unreadable_ = 0;  // messages
   std::map<std::uint64_t, msg::SceneDescription> descriptions_;
 };

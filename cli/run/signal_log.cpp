@@ -32,17 +32,17 @@ void SignalRows::begin(const msg::SceneDescription& description) {
   if (description.epoch() < first_epoch_) return;
   // A description comes again when the reader finds its writer again.
   const bool is_known = description.epoch() == epoch_ && description.version() == version_;
-  if (starts_ > 0 && is_known && !is_over_) return;
+  if (starts_ > 0 && is_known && !is_other_) return;
   std::vector<std::string> names;
   std::vector<std::string> units;
   for (const msg::SignalDescription& signal : description.signals()) {
     names.push_back(signal.name());
     units.push_back(signal.unit());
   }
-  is_over_ = starts_ > 0 && (names != names_ || units != units_);
-  if (is_over_) return;
+  is_other_ = starts_ > 0 && (names != names_ || units != units_);
   epoch_ = description.epoch();
   version_ = description.version();
+  if (is_other_) return;
   step_rate_hz_ = description.step_rate_hz();
   steps_per_row_ = std::max(1.0, description.step_rate_hz() / description.gesture_rate_hz());
   last_step_ = 0;
@@ -79,10 +79,13 @@ void SignalRows::lose_table(const std::string& reason) {
 bool SignalRows::add(const msg::SceneSignals& batch) {
   if (batch.epoch() < first_epoch_) return true;
   if (starts_ == 0 || batch.epoch() != epoch_ || batch.version() != version_) return false;
-  const std::size_t columns = names_.size();
-  if (is_over_ || batch.rate() != msg::RATE_GESTURE || columns == 0 ||
-      batch.signal_count() != columns)
+  if (batch.rate() != msg::RATE_GESTURE) return true;
+  if (is_other_) {
+    other_rows_ += batch.value().size() / std::max(1u, batch.signal_count());
     return true;
+  }
+  const std::size_t columns = names_.size();
+  if (columns == 0 || batch.signal_count() != columns) return true;
   const std::size_t rows = batch.value().size() / columns;
   const bool is_uneven = batch.row_step().size() == rows;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -121,15 +124,12 @@ void SignalRows::write_summary(const std::vector<NodeEnd>& nodes) {
   }
   const bool has_failed =
       std::ranges::any_of(nodes, [](const NodeEnd& node) { return node.has_failed; });
-  const Json json = {{"scene", scene_},
-                     {"step_rate_hz", step_rate_hz_},
-                     {"last_step", last_step_},
-                     {"rows", row_count_},
-                     {"lost_rows", lost_rows_},
-                     {"starts", starts_},
-                     {"complete", lost_rows_ == 0 && starts_ == 1 && !is_over_ && !has_failed},
-                     {"nodes", ends},
-                     {"columns", columns}};
+  const bool is_whole = lost_rows_ == 0 && other_rows_ == 0 && starts_ == 1 && !is_other_;
+  const Json json = {{"scene", scene_},         {"step_rate_hz", step_rate_hz_},
+                     {"last_step", last_step_}, {"rows", row_count_},
+                     {"lost_rows", lost_rows_}, {"other_rows", other_rows_},
+                     {"starts", starts_},       {"complete", is_whole && !has_failed},
+                     {"nodes", ends},           {"columns", columns}};
   summary_file_->write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   summary_file_->flush();
 }
@@ -155,7 +155,10 @@ std::string SignalRows::text() const {
   if (!table_path_.empty()) text += " in " + table_path_;
   if (lost_rows_ > 0) text += ", " + std::to_string(lost_rows_) + " lost on the way";
   if (starts_ > 1) text += "; the scene began " + config::count_text(starts_, "time");
-  if (is_over_) text += "; a scene with other signals came, whose rows are not in the file";
+  if (other_rows_ > 0) {
+    text +=
+        "; left out: " + config::count_text(other_rows_, "row") + " of a scene with other signals";
+  }
   return text;
 }
 
@@ -173,16 +176,18 @@ SignalLog::~SignalLog() {
 }
 
 void SignalLog::take() {
-  msg::SceneDescription description;
-  while (descriptions_.take(description)) {
-    rows_.begin(description);
-    std::erase_if(waiting_, [this](const msg::SceneSignals& batch) { return rows_.add(batch); });
-  }
+  // The rows that came before a description are of the scene before.
+  std::vector<msg::SceneDescription> described;
+  for (msg::SceneDescription one; descriptions_.take(one);) described.push_back(one);
   msg::SceneSignals batch;
   while (signals_.take(batch)) {
     if (rows_.add(batch)) continue;
     waiting_.push_back(batch);
     if (waiting_.size() > kMaxWaiting) waiting_.pop_front();
+  }
+  for (const msg::SceneDescription& description : described) {
+    rows_.begin(description);
+    std::erase_if(waiting_, [this](const msg::SceneSignals& one) { return rows_.add(one); });
   }
 }
 

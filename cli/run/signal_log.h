@@ -36,7 +36,7 @@ class SignalRows {
   SignalRows(const std::string& table_file, const std::string& summary_file,
              std::uint64_t first_epoch = 0);
 
-  /// The scene whose rows follow. One with other signals ends the table.
+  /// The scene whose rows follow. Those of one with other signals are counted and left out.
   void begin(const msg::SceneDescription& description);
   /// Adds the rows of a batch of that scene.
   /// @return false when the batch belongs to another scene, whose description may come behind it
@@ -49,6 +49,7 @@ class SignalRows {
   std::string text() const;
   std::uint64_t row_count() const noexcept { return row_count_; }
   std::uint64_t lost_rows() const noexcept { return lost_rows_; }
+  std::uint64_t other_rows() const noexcept { return other_rows_; }
 
  private:
   void write_summary(const std::vector<NodeEnd>& nodes);
@@ -72,8 +73,9 @@ class SignalRows {
   std::uint64_t last_step_ = 0;
   std::uint64_t row_count_ = 0;
   std::uint64_t lost_rows_ = 0;
-  std::uint64_t starts_ = 0;  // of scenes with these signals
-  bool is_over_ = false;      // a scene with other signals came
+  std::uint64_t other_rows_ = 0;  // of scenes with other signals
+  std::uint64_t starts_ = 0;      // of scenes with these signals
+  bool is_other_ = false;         // the scene has other signals
 };
 
 /// Reads the signals of a session in a thread of its own.

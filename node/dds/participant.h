@@ -62,6 +62,8 @@ struct RawTopic {
   bool reliable = false;
   bool transient_local = false;
   bool exclusive = false;
+  /// A writer of an exclusive one that is silent for so long yields to weaker ones; 0: it never does.
+  std::int64_t deadline_nsec = 0;
   auto operator<=>(const RawTopic&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
@@ -69,6 +71,7 @@ struct RawTopic {
 struct FoundWriter {
   WriterId id{};
   RawTopic topic;
+  std::uint32_t strength = 0;  ///< among the writers of the same key of an exclusive topic
   std::vector<std::string> partitions;
 };
 

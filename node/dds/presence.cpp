@@ -492,6 +492,10 @@ void Presence::remember(const rtps::WriterProxyData& writer, bool gone) {
       .reliable = writer.m_qos.m_reliability.kind == fast::RELIABLE_RELIABILITY_QOS,
       .transient_local = writer.m_qos.m_durability.kind >= fast::TRANSIENT_LOCAL_DURABILITY_QOS,
       .exclusive = writer.m_qos.m_ownership.kind == fast::EXCLUSIVE_OWNERSHIP_QOS};
+  const eprosima::fastrtps::Duration_t& deadline = writer.m_qos.m_deadline.period;
+  if (found.topic.exclusive && deadline != eprosima::fastrtps::c_TimeInfinite)
+    found.topic.deadline_nsec = deadline.to_ns();
+  found.strength = writer.m_qos.m_ownershipStrength.value;
   found.partitions = std::move(partitions);
 }
 

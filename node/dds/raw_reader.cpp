@@ -13,6 +13,8 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
+#include "idl/topics.h"
+#include "node/dds/missing_numbers.h"
 #include "node/dds/participant_impl.h"
 #include "node/dds/raw_type.h"
 
@@ -22,6 +24,13 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
+constexpr std::int64_t kFrameAnswerNsec = 200'000;
+
+eprosima::fastrtps::Duration_t duration_of(std::int64_t nsec) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  return {static_cast<std::int32_t>(nsec / kSecond), static_cast<std::uint32_t>(nsec % kSecond)};
+}
+
 fast::DataReaderQos qos_of(const RawTopic& topic) {
   fast::DataReaderQos qos;
   qos.reliability().kind =
@@ -30,6 +39,10 @@ fast::DataReaderQos qos_of(const RawTopic& topic) {
       topic.transient_local ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
   qos.ownership().kind =
       topic.exclusive ? fast::EXCLUSIVE_OWNERSHIP_QOS : fast::SHARED_OWNERSHIP_QOS;
+  if (topic.deadline_nsec > 0) qos.deadline().period = duration_of(topic.deadline_nsec);
+  // A scene that is recorded without real time waits for the answer to each frame.
+  if (topic.name == msg::TOPIC_FRAME)
+    qos.reliable_reader_qos().times.heartbeatResponseDelay = duration_of(kFrameAnswerNsec);
   qos.history().kind = fast::KEEP_ALL_HISTORY_QOS;
   qos.resource_limits().max_samples = 0;  // no limit: each is taken as it comes
   qos.resource_limits().max_instances = 0;
@@ -50,10 +63,17 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
   const RawTopic topic;
   const std::function<void(const RawSample&)> sink;
 
+  /// A writer of the topic.
+  struct Known {
+    bool is_own = true;  // offers just this topic
+    std::uint32_t strength = 0;
+  };
+
   // Two presences may deliver at once while one replaces the other.
   std::mutex in_use;  // of all below but `lost`
   RawMessage message;
-  std::map<WriterId, bool> is_own;  // of the writers so far: whether it offers just this topic
+  std::map<WriterId, Known> writers;  // so far
+  MissingNumbers numbers{topic.exclusive};
   std::atomic<std::uint64_t> lost{0};
 
   fast::DataReader* reader = nullptr;
@@ -85,13 +105,14 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
     presence = next_presence;
   }
 
-  bool takes_from(const WriterId& writer) {
-    const auto known = is_own.find(writer);
-    if (known != is_own.end()) return known->second;
+  const Known& known(const WriterId& writer) {
+    const auto [entry, is_new] = writers.try_emplace(writer);
+    if (!is_new) return entry->second;
     std::optional<FoundWriter> found = next_presence->writer(writer);
     if (!found && presence != nullptr && presence != next_presence)
       found = presence->writer(writer);
-    return is_own[writer] = !found || found->topic == topic;
+    if (found) entry->second = {.is_own = found->topic == topic, .strength = found->strength};
+    return entry->second;
   }
 
   void on_sample_lost(fast::DataReader*, const fast::SampleLostStatus& status) override {
@@ -105,13 +126,19 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
       while (from->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
         if (!info.valid_data) continue;
         const WriterId writer = writer_id(info.sample_identity.writer_guid());
-        if (!takes_from(writer)) continue;
+        const Known& from_whom = known(writer);
+        if (!from_whom.is_own) continue;
+        const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
+        const MissingNumbers::Noted noted =
+            numbers.note(writer, from_whom.strength, topic.keyed ? key_of(message) : 0, sequence);
         sink({.data = message.data(),
               .size = message.size(),
               .source_nsec = info.source_timestamp.to_ns(),
               .reception_nsec = info.reception_timestamp.to_ns(),
               .writer = writer,
-              .sequence = info.sample_identity.sequence_number().to64long()});
+              .sequence = sequence,
+              .is_first = noted.is_first,
+              .missing = noted.missing});
       }
     } catch (...) {  // no memory for it: lost
       ++lost;

@@ -18,6 +18,8 @@ struct RawSample {
   std::int64_t reception_nsec = 0;  ///< when it came, since 1970
   WriterId writer{};
   std::uint64_t sequence = 0;  ///< number that the writer gave it, from 1
+  bool is_first = false;       ///< none of its writer has come here before
+  std::uint64_t missing = 0;   ///< numbers before it that never came: MissingNumbers::Noted
 };
 
 /// Reads all messages of the writers of one topic that offer it just as it is asked for here. Other

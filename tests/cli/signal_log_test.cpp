@@ -114,6 +114,31 @@ TEST(SignalRows, ASummaryThatHasNoRoomIsSaidToo) {
   }
 }
 
+TEST(SignalRows, RowsOfASceneWithOtherSignalsAreCounted) {
+  const std::string file =
+      testing::TempDir() + "other_signals." + std::to_string(getpid()) + ".json";
+  SignalRows table("", file);
+  table.begin(described(1));
+  table.add(rows(1, 8, 100));
+  msg::SceneDescription other = described(2);
+  other.signals().front().name("width");
+  table.begin(other);
+  EXPECT_TRUE(table.add(rows(2, 8, 40)));
+  table.begin(described(3));
+  table.add(rows(3, 8, 10));
+  EXPECT_EQ(table.row_count(), 110u);
+  EXPECT_EQ(table.lost_rows(), 0u);
+  EXPECT_EQ(table.other_rows(), 40u);
+  EXPECT_THAT(table.text(), testing::HasSubstr("left out: 40 rows of a scene with other signals"));
+  table.finish({});
+
+  std::ifstream text(file);
+  const nlohmann::json summary = nlohmann::json::parse(text);
+  EXPECT_EQ(summary["other_rows"], 40);
+  EXPECT_EQ(summary["complete"], false);
+  std::filesystem::remove(file);
+}
+
 TEST(SignalRows, AnotherVersionBeginsAtStepZero) {
   SignalRows table("", "");
   table.begin(described(1));

@@ -44,8 +44,13 @@ TEST(Traffic, AddsUpTheRatesOfItsWriters) {
 
 TEST(Traffic, CountsWhatDidNotCome) {
   Traffic traffic;
-  traffic.add(message(1, 1, 0));
-  traffic.add(message(1, 5, 100));
+  ReceivedMessage late = message(1, 7, 0);
+  late.missing = 6;
+  traffic.add(late);
+  EXPECT_EQ(traffic.missing(), 0u) << "what was written before the first message that came";
+  late = message(1, 11, 100);
+  late.missing = 3;
+  traffic.add(late);
   EXPECT_EQ(traffic.missing(), 3u);
   EXPECT_EQ(Traffic().messages_per_s(1000 * kMsec), 0.0);
 }

@@ -156,9 +156,15 @@ for i, name in enumerate(table['_columns']):
   ChildProcess python({"/usr/bin/python3", path("read.py"), path("take.npz"), path("take.csv")});
   EXPECT_EQ(python.wait(kPatience), 0) << python.output();
 
+  // In lockstep no frame is lost.
+  export_take({take, "--csv", path("frames.csv"), "--every", "frame", "--mat", "string"});
+  EXPECT_EQ(said_.find("of the scene"), std::string::npos) << said_;
+  EXPECT_GE(table_of(path("frames.csv")).size(), 25u) << "with their header, 25 in a second";
+
   // A part of the time, and of the rows.
   export_take({take, "--csv", path("part.csv"), "--start-offset", "400ms", "--duration", "200ms",
                "--every", "10ms"});
+  EXPECT_EQ(said_.find("is no whole number of gesture periods"), std::string::npos) << said_;
   const auto part = table_of(path("part.csv"));
   EXPECT_LE(part.size(), 21u);
   EXPECT_GT(part.size(), 1u);
@@ -168,6 +174,14 @@ for i, name in enumerate(table['_columns']):
     EXPECT_LE(std::stod(time), 0.6);
     const std::vector<std::string>& whole = exported.at(time);
     EXPECT_TRUE(std::equal(row.begin(), row.end(), whole.begin())) << time;
+  }
+
+  // Rows are those of the take.
+  for (const std::string span : {"1.5ms", "0.1ms"}) {
+    export_take({take, "--csv", path("uneven.csv"), "--every", span});
+    EXPECT_NE(said_.find("--every " + span + " is no whole number of gesture periods of 0.001 s"),
+              std::string::npos)
+        << said_;
   }
 
   const std::vector<std::pair<std::vector<std::string>, std::string>> mistakes{

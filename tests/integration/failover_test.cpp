@@ -9,6 +9,7 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,15 @@
 
 #include "idl/control.h"
 #include "idl/gesture.h"
+#include "idl/topics.h"
+#include "node/dds/payload.h"
 #include "node/dds/reader.h"
+#include "node/topic_follower.h"
 #include "tests/device/kfb1_board.h"
 #include "tests/integration/live_session.h"
 #include "tests/integration/scenes.h"
 #include "tests/support/filled.h"
+#include "tests/support/test_domain.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::test {
@@ -190,14 +195,41 @@ TEST_F(Failover, AStandInTakesOverWhenTheHardwareProcessDiesAndHandsBack) {
   })) << "the scene went on";
 }
 
+/// The hand that a recorder sees, or `cordis echo`: the newest position of the key, in any thread.
+class SeenHand {
+ public:
+  explicit SeenHand(const std::string& session)
+      : participant_({own_domain(), session, "seen"}),
+        follower_(
+            participant_,
+            [](const dds::RawTopic& topic) { return topic.name == msg::TOPIC_POSITIONS; },
+            [this](const dds::RawTopic&, const dds::RawSample& sample) {
+              msg::GesturePositions positions;
+              if (dds::decode(std::as_bytes(std::span(sample.data, sample.size)), positions))
+                position_m_ = positions.position_m()[0];
+            }) {}
+
+  bool is_at(double position_m) {
+    return eventually([&] { return std::abs(position_m_ - position_m) < 1e-5; });
+  }
+
+ private:
+  std::atomic<double> position_m_{0.0};
+  dds::Participant participant_;
+  node::TopicFollower follower_;
+};
+
 TEST_F(Failover, AStandInPlaysWhileTheHardwareIsUnplugged) {
+  SeenHand seen("test");
   session_.start("sim_node", "sim");
   session_.start("device_node", "keyboard");
   session_.start("device_node", "standby_node");
   ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));
+  EXPECT_TRUE(seen.is_at(-0.01));
 
   board_.plug.pull();
   ASSERT_TRUE(in_phases(msg::PHASE_LOST, msg::PHASE_RUNNING, kStandbyForce));
+  EXPECT_TRUE(seen.is_at(-0.005)) << "the hand that the scene answers";
 
   board_.plug.into_serial_line(session_.folder() / "tty");
   ASSERT_TRUE(in_phases(msg::PHASE_RUNNING, msg::PHASE_STANDBY, kHardwareForce));

@@ -32,11 +32,15 @@ class Received {
     std::vector<std::uint8_t> message;
     std::uint64_t sequence = 0;
     WriterId writer{};
+    std::uint64_t missing = 0;
   };
   std::function<void(const RawSample&)> sink() {
     return [this](const RawSample& sample) {
       const std::lock_guard lock(mutex_);
-      copies_.push_back({{sample.data, sample.data + sample.size}, sample.sequence, sample.writer});
+      copies_.push_back({{sample.data, sample.data + sample.size},
+                         sample.sequence,
+                         sample.writer,
+                         sample.missing});
     };
   }
   std::vector<Copy> copies() const {
@@ -97,6 +101,40 @@ TEST(RawTopic, AnObserverOfALoopReceivesEverySampleInOrder) {
   for (const Received::Copy& copy : received.copies()) EXPECT_EQ(copy.sequence, ++before);
   msg::GesturePositions newest;
   EXPECT_TRUE(eventually([&] { return reader.take(newest) && newest.sample() == kSent; }));
+}
+
+/// Who reads bytes sees a standby as soon as every other reader does.
+TEST(RawTopic, AStandbyIsReadWhileTheStrongerWriterIsSilent) {
+  Participant hand({test::own_domain(), "standby", "hand", false, true});
+  Participant backup({test::own_domain(), "standby", "backup", false, true});
+  Participant observer({test::own_domain(), "standby", "recorder"});
+  Writer<msg::GesturePositions> strong(hand, Topic::kPositions, 10);
+  Writer<msg::GesturePositions> weak(backup, Topic::kPositions);
+  const RawTopic topic = writer_of(observer, "gesture/positions").topic;
+  EXPECT_EQ(topic.deadline_nsec, 20'000'000);
+  Received received;
+  const RawReader raw(observer, topic, received.sink());
+  ASSERT_TRUE(eventually([&] { return strong.matched_count() == 1 && weak.matched_count() == 1; }));
+
+  msg::GesturePositions of_strong = positions_of(7, 1);
+  msg::GesturePositions of_weak = positions_of(7, 2);
+  std::vector<Received::Copy> copies;
+  const auto comes = [&](Writer<msg::GesturePositions>& writer, msg::GesturePositions& sample) {
+    const std::size_t before = received.copies().size();
+    return eventually([&] {
+      EXPECT_TRUE(writer.write(sample));
+      copies = received.copies();
+      return copies.size() > before;
+    });
+  };
+  ASSERT_TRUE(comes(strong, of_strong));
+  ASSERT_TRUE(comes(weak, of_weak)) << "the stronger one is silent";
+  const Received::Copy first_of_weak = copies.back();
+  EXPECT_NE(first_of_weak.writer, copies.front().writer);
+  EXPECT_EQ(first_of_weak.missing, 0u) << "DDS has kept back those before";
+  ASSERT_TRUE(comes(strong, of_strong)) << "it is back";
+  EXPECT_EQ(copies.back().writer, copies.front().writer);
+  EXPECT_EQ(copies.back().missing, 0u);
 }
 
 /// A topic that is not wanted has no reader, so it costs its writer nothing.

@@ -25,7 +25,7 @@ inline const std::string kCountIdl = "module lab { struct Count { unsigned long 
 
 /// Writes the numbers from 0 on to the topic lab/count, reliable, of a session named `count`. Each
 /// chunk holds few messages.
-inline void write_count_take(const std::filesystem::path& path) {
+inline void write_count_take(const std::filesystem::path& path, bool is_exclusive = false) {
   mcap::WriterConfig config;
   config.chunk_bytes = 200;
   mcap::Writer writer(path, config);
@@ -35,8 +35,7 @@ inline void write_count_take(const std::filesystem::path& path) {
                                                     .message_encoding = "cdr",
                                                     .metadata = {{"qos", R"(reliability: true
 durability: false
-ownership: false
-)"}}});
+ownership: )" + std::string(is_exclusive ? "true" : "false") + "\n"}}});
   ASSERT_EQ(writer.add_metadata({"cordis.session", {{"session", "count"}}}),
             mcap::WriteStatus::kOk);
   for (std::uint32_t number = 0; number < kCounted; ++number) {

@@ -29,12 +29,17 @@ bool holds_gap(const std::filesystem::path& part) {
   return false;
 }
 
-TEST(MissedMessages, AreCountedInTheTakeAndReportedByInfo) {
+class RecorderThatStops : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(, RecorderThatStops, ::testing::Bool(), [](const auto& exclusive) {
+  return exclusive.param ? "ExclusiveTopic" : "SharedTopic";
+});
+
+TEST_P(RecorderThatStops, CountsWhatItMissesInTheTake) {
   const mcap::TakeFolder folder;
   const std::string domain = std::to_string(test::own_domain());
   const std::string played = folder / "played.mcap";
   const std::string take = folder / "take.mcap";
-  test::write_count_take(played);
+  test::write_count_take(played, GetParam());
   ChildProcess player({kMissedCordis, "play", played, "--loop", "--rate", "200", "--session",
                        "missed", "--domain", domain});
   ASSERT_TRUE(player.wait_for_output("session 'missed'", kPatience));

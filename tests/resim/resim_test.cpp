@@ -423,19 +423,27 @@ TEST(Resim, EndsWithACodeThatSaysWhatWasFound) {
     for (msg::InputSample& sample : batch.sample()) sample.value()[0] += 1e-6;
     return true;
   });
+  const std::string twice = (folder / "twice.mcap").string();
+  write_two_lives(twice, /*missing=*/0);
   struct Case {
     std::string take;
     int code;
     int expecting;  // with --expect
   };
-  for (const Case& one :
-       {Case{whole, 0, 0}, Case{gap, 3, 1}, Case{old, 0, 1}, Case{changed, 1, 1}}) {
+  for (const Case& one : {Case{whole, 0, 0}, Case{gap, 3, 1}, Case{old, 0, 1}, Case{changed, 1, 1},
+                          Case{twice, 3, 1}}) {
     const auto [code, text] = resim_verb({one.take});
     EXPECT_EQ(code, one.code) << text;
     const auto [expecting, words] = resim_verb({one.take, "--expect"});
     EXPECT_EQ(expecting, one.expecting) << words;
     EXPECT_EQ(words.find("--rehash") != std::string::npos, one.take == old) << words;
   }
+  const ResimResult half = resim_of(twice);
+  const auto [code, text] = resim_verb({twice});
+  EXPECT_NE(text.find("began again 1 time in this take: " + std::to_string(half.findings.frames) +
+                      " of " + std::to_string(2 * half.findings.frames) + " frames are compared"),
+            std::string::npos)
+      << text;
 }
 
 TEST(Resim, ATakeWithARestartIsNotRenewed) {
