@@ -138,7 +138,7 @@ TEST(OverdampedDrive, DragsAMassToSecondOrder) {
   }
 }
 
-/// Of what moves on a circle about (0.3, 0.2) m.
+/// Where the driven end is: on a circle about (0.3, 0.2) m.
 Vec3 place_2d(double time) {
   return {0.3 + 0.1 * std::sin(kDragPulse * time), 0.2 + 0.1 * (1.0 - std::cos(kDragPulse * time)),
           0.0};
@@ -166,14 +166,14 @@ TEST(OverdampedDrive, DragsAMassInAPlaneToSecondOrder) {
   for (const double viscosity : {1.0, 10.0, 100.0}) {
     const auto scene = [&](double step) { return circled_mass(viscosity, step); };
     ASSERT_TRUE(engine::damps_implicitly(scene(5e-4)));
-    const auto pull = [](const Vec3& from, const Vec3& x) {
+    const auto spring_force = [](const Vec3& from, const Vec3& x) {
       const Vec3 way = from - x;
       return Vec3(kDraggedStiffness * (way.norm() - 0.1) * way / way.norm());
     };
     const auto force = [&](double time, const Vec3& x, const Vec3& v) {
       const Vec3 axis = (place_2d(time) - x).normalized();
       return Vec3(1e3 * viscosity * axis.dot(velocity_2d(time) - v) * axis +
-                  pull(Vec3(0.1, 0, 0), x) + pull(Vec3(0, 0.1, 0), x));
+                  spring_force(Vec3(0.1, 0, 0), x) + spring_force(Vec3(0, 0.1, 0), x));
     };
     const DraggedOrder order = dragged_order_of(scene, force, viscosity);
     EXPECT_LT(order.error, 2e-4) << viscosity;

@@ -71,7 +71,7 @@ class ImplicitDamping {
   const AlignedVector<double>& kick() const noexcept { return kick_; }
   /// The component of dt w at b less that at a [m].
   double elongation(std::uint32_t a, std::uint32_t b, const Vec3& axis) const noexcept;
-  /// That of dt v(n-1/2) [m].
+  /// The component of dt v(n-1/2) at b less that at a [m].
   double elongation_before(std::uint32_t a, std::uint32_t b, const Vec3& axis) const noexcept;
   /// Finds how dt w answers to a constant force of 1 N that pulls a and b together along the axis.
   /// @return how much shorter elongation() becomes [m/N], > 0
