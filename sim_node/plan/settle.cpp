@@ -312,17 +312,17 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
   Rest rest(network, asked.has_friction);
   double largest = 0.0;
   double least = std::numeric_limits<double>::infinity();
-  double least_halfway = 0.0;
+  double min_halfway = 0.0;
   int holds = 0;
   Pace pace(network.step);
   for (;;) {
     const std::uint64_t steps_before = rest.steps();
     rest.hold();
     Settled pose = rest.pose();
-    pose.comes_nearer = 2.0 * pose.force < least_halfway;
+    pose.comes_nearer = 2.0 * pose.force < min_halfway;
     if (!pose.is_finite || pose.force < asked.until || rest.steps() >= asked.max_steps) return pose;
     largest = std::max(largest, pose.force);
-    if (rest.steps() < asked.max_steps / 2) least_halfway = std::min(least, pose.force);
+    if (rest.steps() < asked.max_steps / 2) min_halfway = std::min(least, pose.force);
     ++holds;
     if (pose.force < kLess * least) {
       least = pose.force;

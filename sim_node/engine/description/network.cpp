@@ -34,7 +34,7 @@ struct ItemName {
   std::optional<std::uint32_t> number{};  // behind the part
 
   ItemName operator+(const char* of_it) const { return {kind, index, of_it}; }
-  /// Of a MAT that belongs to it.
+  /// The name of a MAT that belongs to it.
   ItemName mat(std::uint32_t mat) const { return {kind, index, ": MAT ", mat}; }
   explicit operator std::string() const {
     std::string text = kind;
