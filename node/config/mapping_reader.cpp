@@ -125,9 +125,10 @@ std::vector<std::string> MappingReader::present_keys() const {
   return keys;
 }
 
-double MappingReader::required_number(const std::string& key, Range range) {
+double MappingReader::required_number(const std::string& key, Range range,
+                                      const std::string& hint) {
   log_request(value_, key, KeyKind::kNumber, true, [&](KeyRequest& r) { r.range = range; });
-  const Value value = take_required(key);
+  const Value value = take_required(key, hint);
   return value.exists() ? number_of(value, key, placeholder(range), range) : placeholder(range);
 }
 
@@ -205,9 +206,10 @@ std::string MappingReader::optional_text(const std::string& key, std::string fal
 }
 
 std::string MappingReader::required_choice(const std::string& key,
-                                           const std::vector<std::string>& choices) {
+                                           const std::vector<std::string>& choices,
+                                           const std::string& or_else) {
   log_request(value_, key, KeyKind::kChoice, true, [&](KeyRequest& r) { r.choices = choices; });
-  const Value value = take_required(key);
+  const Value value = take_required(key, "one of " + listed(choices) + or_else);
   return value.exists() ? choice_of(value, key, choices.front(), choices) : choices.front();
 }
 
@@ -237,11 +239,12 @@ std::optional<Colour> MappingReader::optional_colour(const std::string& key) {
   return std::nullopt;
 }
 
-std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length) {
+std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length,
+                                                    const std::string& hint) {
   log_request(value_, key, KeyKind::kNumbers, true, [&](KeyRequest& r) { r.length = length; });
   const Value value = take_required(key);
   const std::vector<double> numbers =
-      value.exists() ? numbers_of(value, key, length) : std::vector<double>{};
+      value.exists() ? numbers_of(value, key, length, hint) : std::vector<double>{};
   return numbers.empty() ? std::vector<double>(std::max<std::size_t>(length, 1)) : numbers;
 }
 
@@ -295,9 +298,9 @@ Value MappingReader::optional_value(const std::string& key) {
   return take(key);
 }
 
-Value MappingReader::required_value(const std::string& key) {
+Value MappingReader::required_value(const std::string& key, const std::string& hint) {
   log_request(value_, key, KeyKind::kAny, true);
-  return take_required(key);
+  return take_required(key, hint);
 }
 
 void MappingReader::error_at(const std::string& key, std::string message, std::string hint) {
@@ -328,9 +331,10 @@ Value MappingReader::take(const std::string& key) {
   return value_.find(key);
 }
 
-Value MappingReader::take_required(const std::string& key) {
+Value MappingReader::take_required(const std::string& key, const std::string& hint) {
   Value value = take(key);
-  if (!value.exists() && readable_) report(value_.place(), "missing key '" + key + "' in " + what_);
+  if (!value.exists() && readable_)
+    report(value_.place(), "missing key '" + key + "' in " + what_, hint);
   return value;
 }
 
@@ -391,7 +395,7 @@ std::string MappingReader::choice_of(const Value& value, const std::string& key,
 }
 
 std::vector<double> MappingReader::numbers_of(const Value& value, const std::string& key,
-                                              std::size_t length) {
+                                              std::size_t length, const std::string& hint) {
   const bool alone = value.kind() != Value::Kind::kSequence;
   const std::vector<Value> items = alone ? std::vector<Value>{value} : value.items();
   std::vector<double> numbers;
@@ -399,9 +403,10 @@ std::vector<double> MappingReader::numbers_of(const Value& value, const std::str
   if (length == 0 && items.empty()) {
     report(value.place(), name_of(key) + " must not be empty");
   } else if (length != 0 && numbers.size() != length) {
-    report(value.place(), name_of(key) + " must have " + std::to_string(length) +
-                              (length == 1 ? " number" : " numbers") + ", got " +
-                              std::to_string(numbers.size()));
+    report(value.place(),
+           name_of(key) + " must have " + std::to_string(length) +
+               (length == 1 ? " number" : " numbers") + ", got " + std::to_string(numbers.size()),
+           hint);
     return {};
   }
   return numbers;

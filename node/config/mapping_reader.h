@@ -30,7 +30,8 @@ class MappingReader {
   /// In the order of the file.
   std::vector<std::string> present_keys() const;
 
-  double required_number(const std::string& key, Range range = {});
+  /// @param hint  for a key that is missing
+  double required_number(const std::string& key, Range range = {}, const std::string& hint = {});
   double optional_number(const std::string& key, double fallback, Range range = {});
   long required_integer(const std::string& key, long lowest, long highest);
   long optional_integer(const std::string& key, long fallback, long lowest, long highest);
@@ -42,7 +43,9 @@ class MappingReader {
   std::string required_text(const std::string& key);
   std::string optional_text(const std::string& key, std::string fallback);
   /// One word of `choices`; the message lists them and suggests the nearest.
-  std::string required_choice(const std::string& key, const std::vector<std::string>& choices);
+  /// @param or_else  what may stand instead of the key, for the hint when it is missing
+  std::string required_choice(const std::string& key, const std::vector<std::string>& choices,
+                              const std::string& or_else = {});
   std::string optional_choice(const std::string& key, std::string fallback,
                               const std::vector<std::string>& choices);
 
@@ -51,7 +54,9 @@ class MappingReader {
 
   /// A sequence of finite numbers; a single number stands for a sequence of one. `length` 0 = any
   /// length but none.
-  std::vector<double> required_numbers(const std::string& key, std::size_t length = 0);
+  /// @param hint  for another length
+  std::vector<double> required_numbers(const std::string& key, std::size_t length = 0,
+                                       const std::string& hint = {});
   std::vector<double> optional_numbers(const std::string& key, std::vector<double> fallback,
                                        std::size_t length = 0);
   std::vector<long> required_integers(const std::string& key, long lowest, long highest);
@@ -63,7 +68,8 @@ class MappingReader {
   Value optional_sequence(const std::string& key);
   /// Any kind; does not exist when absent. Marks the key as known.
   Value optional_value(const std::string& key);
-  Value required_value(const std::string& key);
+  /// @param hint  for a key that is missing
+  Value required_value(const std::string& key, const std::string& hint = {});
 
   void error_at(const std::string& key, std::string message, std::string hint = {});
 
@@ -82,7 +88,7 @@ class MappingReader {
 
  private:
   Value take(const std::string& key);
-  Value take_required(const std::string& key);
+  Value take_required(const std::string& key, const std::string& hint = {});
   Value take_kind(const std::string& key, Value value, Value::Kind kind, const char* wanted);
   void report(const Place& place, std::string message, std::string hint = {});
   double number_of(const Value& value, const std::string& key, double fallback, Range range);
@@ -91,7 +97,8 @@ class MappingReader {
   std::string text_of(const Value& value, const std::string& key, std::string fallback);
   std::string choice_of(const Value& value, const std::string& key, std::string fallback,
                         const std::vector<std::string>& choices);
-  std::vector<double> numbers_of(const Value& value, const std::string& key, std::size_t length);
+  std::vector<double> numbers_of(const Value& value, const std::string& key, std::size_t length,
+                                 const std::string& hint = {});
 
   Value value_;
   std::string what_;

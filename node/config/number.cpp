@@ -97,7 +97,8 @@ double read_number(const Value& value, const std::string& what, double fallback,
     return fallback;
   }
   if (!is_within(number, range)) {
-    problems.error(value.place(), what + " must be " + range_text(range) + ", got " + text);
+    problems.error(value.place(), what + " must be " + range_text(range) + ", got " + text,
+                   range.hint);
     return fallback;
   }
   return number;

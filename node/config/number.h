@@ -14,6 +14,7 @@ struct Range {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool lowest_excluded = false;
+  const char* hint = "";  ///< for who needs a number outside
 
   static Range positive() { return {0.0, std::numeric_limits<double>::infinity(), true}; }
   static Range not_negative() { return {0.0, std::numeric_limits<double>::infinity(), false}; }

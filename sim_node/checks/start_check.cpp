@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "node/assert.h"
+#include "sim_node/checks/overlap_check.h"
 #include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/plan/rate.h"
@@ -87,8 +88,10 @@ void check_overlaps(const scene::Scene& scene, config::Problems& problems) {
   for (std::uint32_t s = 0; s < network.sets.size(); ++s) {
     const engine::SetLiaison& set = network.sets[s];
     const auto* law = law_at_start(network.state_machines[set.state_machine]);
-    if (law == nullptr && set.rest_length == 0.0) continue;
+    const bool overlaps = set.rest_length != 0.0 || engine::acts_on_surfaces(network, set);
+    if (law == nullptr && !overlaps) continue;
     const plan::StartPairs near(network, set);
+    check_overlap(scene, near, s, problems);
     check_coincidence(scene, near, set, {engine::LiaisonKind::kSet, s}, problems);
     if (law == nullptr) continue;
     Overlap worst;

@@ -2,14 +2,58 @@
 #include "sim_node/scene/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "sim_node/engine/integrators/integrator_limits.h"
+#include "sim_node/scene/liaisons/liaison.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::scene {
 
 namespace {
+
+engine::LiaisonKind kind_of(LinkKind kind) {
+  constexpr std::array<engine::LiaisonKind, kLinkKindCount> kinds{
+      engine::LiaisonKind::kLink, engine::LiaisonKind::kStateLink,
+      engine::LiaisonKind::kMaxwellLink, engine::LiaisonKind::kBend};
+  return kinds[static_cast<std::size_t>(kind)];
+}
+
+/// The liaison that links or sets are made of; nullptr where there is none.
+const Liaison* definition_of(const Scene& scene, engine::LiaisonId id) {
+  const auto find = [&scene](const std::string& name) {
+    return scene.liaisons ? scene.liaisons->find(name) : nullptr;
+  };
+  if (id.kind == engine::LiaisonKind::kSet)
+    return find(scene.network.state_machines[scene.network.sets[id.index].state_machine].name);
+  const auto group = std::ranges::find_if(scene.link_groups, [id](const LinkGroup& each) {
+    return kind_of(each.kind) == id.kind && id.index >= each.first &&
+           id.index - each.first < each.count;
+  });
+  return group == scene.link_groups.end() ? nullptr : find(group->liaison);
+}
+
+/// "cordis, leapfrog": the integrators that take the scene.
+std::string fitting_integrators(const Scene& scene) {
+  engine::NetworkDescription network = scene.network;
+  std::string words;
+  for (const engine::IntegratorKind kind : engine::kIntegrators) {
+    network.integrator = kind;
+    if (!engine::refusal_of(network))
+      words += (words.empty() ? "" : ", ") + std::string(to_string(kind));
+  }
+  return words;
+}
+
+/// Where a liaison stands, and what it is made of.
+std::string places_of(const Scene& scene, engine::LiaisonId id, const Called& called) {
+  if (called.place.line == 0) return {};
+  std::string text = called.name + " stands at " + place_text(called.place);
+  if (const Liaison* liaison = definition_of(scene, id))
+    text += ", its liaison at " + place_text(liaison->place);
+  return text;
+}
 
 /// @return whether the integrator takes all that is in the scene
 bool check_integrator(const Scene& scene, const config::Place& place, config::Problems& problems) {
@@ -20,8 +64,11 @@ bool check_integrator(const Scene& scene, const config::Place& place, config::Pr
   if (refusal->liaison) {
     const Called liaison = call_liaison(scene, refusal->liaison);
     owner = liaison.name;
-    if (liaison.place.line > 0) hint = owner + " stands at " + place_text(liaison.place);
+    hint = places_of(scene, *refusal->liaison, liaison);
   }
+  const std::string fitting = fitting_integrators(scene);
+  if (!fitting.empty())
+    hint = "integrators that take the scene: " + fitting + (hint.empty() ? "" : "; " + hint);
   problems.error(place,
                  std::string("the integrator ") + to_string(scene.network.integrator) +
                      " does not take " + refusal->what + ", which " + owner + " has",

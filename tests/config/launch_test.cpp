@@ -252,7 +252,8 @@ nodes: {sim: {node: sim_node}}
 nodes:
   sim: {scene: x}
 )",
-                  "l.yaml:3:8: error: missing key 'node' in node 'sim'", ""},
+                  "l.yaml:3:8: error: missing key 'node' in node 'sim'",
+                  "one of sim_node, device_node, viz_node, record_node"},
         BadLaunch{R"(cordis: 1
 nodes:
   sim: sim_node

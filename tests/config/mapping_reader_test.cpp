@@ -127,6 +127,33 @@ a:
 ^)");
 }
 
+TEST(MappingReader, SaysWhatAMissingKeyMayBe) {
+  EXPECT_EQ(problems_of("a:\n  b: 1\n",
+                        [](MappingReader& r) {
+                          r.required_mapping("a");
+                          r.required_number("band_hz", {}, "the highest one");
+                          r.required_value("at_m", "where it is");
+                          r.required_choice("kind", {"mass", "plane"});
+                          r.required_choice("sort", {"mass", "plane"}, ", or none");
+                        }),
+            R"(t:1:1: error: missing key 'band_hz' in thing
+a:
+^
+  hint: the highest one
+t:1:1: error: missing key 'at_m' in thing
+a:
+^
+  hint: where it is
+t:1:1: error: missing key 'kind' in thing
+a:
+^
+  hint: one of mass, plane
+t:1:1: error: missing key 'sort' in thing
+a:
+^
+  hint: one of mass, plane, or none)");
+}
+
 TEST(MappingReader, StandsInForABrokenRequiredValueWithOneInRange) {
   Problems problems;
   MappingReader reader(load_text(R"(a: x

@@ -84,7 +84,14 @@ INSTANTIATE_TEST_SUITE_P(
                    "to compare, write '=='"},
         BadLiaison{when("\"elongation_m > 2^m\""),
                    "'when' in exit of state 'x' of liaison 'l' has something right behind a number",
-                   "to multiply, write '*'"},
+                   "to multiply, write '*'; a number has no unit, for names have the units"},
+        BadLiaison{when("\"2 * force_n > 60 ^N\""),
+                   "'when' in exit of state 'x' of liaison 'l' does not expect 'N' here",
+                   "to multiply, write '*'; a number has no unit, for names have the units"},
+        BadLiaison{when("\"elongation_m > ^$hold_m\""),
+                   "'when' in exit of state 'x' of liaison 'l' has a '$'",
+                   "$name is a whole value alone: write parameters: {name: $name}, and name in the "
+                   "formula"},
         BadLiaison{when("\"elongation_m > 1 ^/ 0\""),
                    "'when' in exit of state 'x' of liaison 'l' has a part that is no finite number",
                    ""},
@@ -109,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
             states("      x: {exits: [{to: ^z, when: elongation_m > hold_m}]}\n      yy: {}\n"),
             "'to' in exit of state 'x' of liaison 'l' must be one of x, yy, got 'z'", ""},
         BadLiaison{states("      x: {exits: [^{when: elongation_m > hold_m}]}\n"),
-                   "missing key 'to' in exit of state 'x' of liaison 'l'", ""},
+                   "missing key 'to' in exit of state 'x' of liaison 'l'", "one of x"},
         BadLiaison{states("      x: {exits: [^{to: x}]}\n"),
                    "missing key 'when' in exit of state 'x' of liaison 'l'", ""},
         BadLiaison{states("      x: {exits: [{to: x, when: elongation_m > hold_m, rest: "
@@ -153,7 +160,14 @@ INSTANTIATE_TEST_SUITE_P(
         BadLiaison{states(R"(      x: {exits: [{to: x, when: elongation_m > hold_m, rest: here}]}
       ^yy: {}
 )"),
-                   "state 'yy' of liaison 'l' cannot be reached from its start, 'x'", ""},
+                   "state 'yy' of liaison 'l' cannot be reached from its start, 'x'",
+                   "give 'x' the exit {to: yy, when: ...}"},
+        BadLiaison{states(R"(      x: {exits: [{to: yy, when: elongation_m > hold_m}]}
+      yy: {stiffness_n_per_m: 1, exits: []}
+      ^broken: {}
+)"),
+                   "state 'broken' of liaison 'l' cannot be reached from its start, 'x'",
+                   "give 'yy' the exit {to: broken, when: ...}"},
         BadLiaison{states(R"(      x: {exits: [{to: yy, when: elongation_m > hold_m}]}
       ^yy: {stiffness_n_per_m: 1}
 )"),
@@ -190,6 +204,10 @@ INSTANTIATE_TEST_SUITE_P(
             "let the state last: add 'and falling(...)' of the compared value, or 'and age_s "
             "> ...'"}));
 
+constexpr const char* kAnyPower =
+    "an expression has any power, as \"3 * sign(elongation_m) * abs(elongation_m)^1.3\"; a "
+    "dissipation asks for speed_m_per_s";
+
 INSTANTIATE_TEST_SUITE_P(
     Laws, BadLiaisons,
     testing::Values(
@@ -207,7 +225,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "'at_m' in elasticity of liaison 'l' must not be empty", ""},
         BadLiaison{scene_of("  l: {elasticity: {kind: power, coefficient: 1, exponent: ^1.3}}\n"),
                    "'exponent' in elasticity of liaison 'l' must be a multiple of 0.5, got 1.3",
-                   "give any other power as a table"},
+                   kAnyPower},
+        BadLiaison{scene_of("  l: {elasticity: {kind: power, coefficient: 1, exponent: ^-2}}\n"),
+                   "'exponent' in elasticity of liaison 'l' must be between 0 and 16, got -2",
+                   kAnyPower},
         BadLiaison{
             scene_of("  l: {elasticity: {kind: lennard_jones, depth_j: ^-1, diameter_m: 1}}\n"),
             "'depth_j' in elasticity of liaison 'l' must be >= 0, got -1", ""},

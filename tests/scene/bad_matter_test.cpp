@@ -52,7 +52,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "'at_m' in matter 'a' must be between -1000000 and 1000000, got 1e7", ""},
         BadScene{kHead2,
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^3}\n",
-                 "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1", ""},
+                 "'velocity_m_per_s' in matter 'a' must have 2 numbers, got 1",
+                 "write 2 numbers [x, y]"},
         BadScene{
             kHead2, "matter:\n  a: {kind: ^mas, mass_kg: 1, at: 0}\n",
             "'kind' in matter 'a' must be one of mass, fixed, points, string, ring, grid, lattice, "
@@ -65,7 +66,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kHead1, "matter:\n  a: {kind: points, mass_kg: 1, at_m: [0, 1], radius_m: ^-1}\n",
                  "'radius_m' in matter 'a' must be >= 0, got -1", ""},
         BadScene{kHead2, "matter:\n  a: ^{mass_kg: 1, at_m: [0, 0]}\n",
-                 "missing key 'kind' in matter 'a'", ""},
+                 "missing key 'kind' in matter 'a'",
+                 "one of mass, fixed, points, string, ring, grid, lattice, disc, ball, pack, skin, "
+                 "beam, plane, box, cylinder, polyline"},
         BadScene{kHead2, "matter:\n  a: ^3\n", "matter 'a' must be a mapping of keys, got '3'", ""},
         BadScene{kHead2, "matter:\n  ^3a: {kind: mass, mass_kg: 1, at_m: [0, 0]}\n",
                  "a name is of letters, digits, '_' and '-' and begins with a letter, got '3a'",

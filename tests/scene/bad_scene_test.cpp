@@ -94,7 +94,8 @@ space: 1
 step: {rate_hz: 1000, integrator: ^implicit, freeze: {tolerance_m: 1e-6}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
 )",
-                 "the integrator implicit does not take freezing, which the scene has", ""},
+                 "the integrator implicit does not take freezing, which the scene has",
+                 "integrators that take the scene: cordis, leapfrog"},
         BadScene{kNothing,
                  R"(cordis: 1
 space: 1
@@ -113,7 +114,53 @@ matter: {s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, viscosity
              ends: fixed}}
 )",
                  "the integrator symplectic4 does not take viscosity, which s.links[0] has",
-                 "s.links[0] stands at t:4"},
+                 "integrators that take the scene: cordis, leapfrog, implicit, modal; s.links[0] "
+                 "stands at t:4"},
+        BadScene{kNothing,
+                 R"(cordis: 1
+space: 1
+step: {rate_hz: 1000, integrator: ^symplectic4}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 1, 2]}}
+liaisons:
+  soft: {kind: spring, stiffness_n_per_m: 1}
+  free: {elasticity: 500 * elongation_m * mass_a_kg}
+links:
+  - {liaison: soft, between: ["a[0]", "a[1]"]}
+  - {liaison: free, between: ["a[1]", "a[2]"], name: pull}
+)",
+                 "the integrator symplectic4 does not take a free expression, which pull has",
+                 "integrators that take the scene: cordis, leapfrog, implicit, modal; pull stands "
+                 "at t:10, its liaison at t:7"},
+        BadScene{kNothing,
+                 R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, integrator: ^leapfrog}
+matter: {a: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [[0, 0], [1, 0]]}}
+liaisons:
+  rub: {stiffness_n_per_m: 9, pulls: false, range: rest, friction: {static: 1, stiffness_n_per_m: 9}}
+links:
+  - {liaison: rub, within: a}
+)",
+                 "the integrator leapfrog does not take friction, which rub of sets has",
+                 "integrators that take the scene: cordis; rub of sets stands at t:8, its liaison "
+                 "at t:6"},
+        BadScene{kNothing,
+                 R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, integrator: ^modal}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "the integrator modal does not take 2 or 3 dimensions, which the scene has",
+                 "integrators that take the scene: cordis, leapfrog, symplectic4, implicit"},
+        BadScene{kNothing,
+                 R"(cordis: 1
+space: 1
+accuracy: ^{tolerance: 0.01, over_s: 2}
+step: {gesture_rate_hz: 1000}
+matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+)",
+                 "missing key 'band_hz' in accuracy",
+                 "the highest frequency that the tolerance holds for"},
         BadScene{kHead1, "matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}\nworld: {^viscosity: 1}\n",
                  "unknown key 'viscosity' in world", "did you mean 'viscosity_n_s_per_m'?"},
         BadScene{
@@ -124,7 +171,8 @@ matter: {s: {kind: string, count: 3, mass_kg: 1, stiffness_n_per_m: 1, viscosity
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 world: {gravity_m_per_s2: ^-9.81}
 )",
-                 "'gravity_m_per_s2' in world must have 2 numbers, got 1", ""},
+                 "'gravity_m_per_s2' in world must have 2 numbers, got 1",
+                 "for example [0, -9.81]"},
         BadScene{kHead2, "matter: ^{a: {kind: fixed, at_m: [0, 0]}}\n",
                  "the scene has no mass that can move, and no port", ""},
         BadScene{kHead2, "matter: ^{}\n", "the scene has no mass that can move, and no port", ""},
@@ -149,13 +197,23 @@ liaisons:
 liaisons:
   s: ^{kind: spring_damper, stiffness_n_per_m: 1}
 )",
-                 "missing key 'viscosity_n_s_per_m' in liaison 's'", ""},
+                 "missing key 'viscosity_n_s_per_m' in liaison 's'",
+                 "give it, or write kind: spring"},
+        BadScene{kHead1,
+                 R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
+liaisons:
+  s: ^{kind: spring_damper, viscosity_n_s_per_m: 1}
+)",
+                 "missing key 'stiffness_n_per_m' in liaison 's'",
+                 "give it, or write kind: damper"},
         BadScene{kHead1,
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
 liaisons:
   s: ^{stiffness_n_per_m: 1}
 )",
-                 "missing key 'kind' in liaison 's'", ""},
+                 "missing key 'kind' in liaison 's'",
+                 "one of spring, damper, spring_damper, maxwell, state_machine, parallel, bending; "
+                 "a liaison with states or a law, as elasticity, needs none"},
         BadScene{kHead1,
                  R"(matter: {a: {kind: mass, mass_kg: 1, at_m: 0}}
 liaisons:

@@ -213,7 +213,8 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
             R"(liaisons: {b: {kind: bending, states: {whole: {final: true}, ^cut: {final: true}}}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-            "state 'cut' of liaison 'b' cannot be reached from its start, 'whole'", ""},
+            "state 'cut' of liaison 'b' cannot be reached from its start, 'whole'",
+            "give 'whole' the exit {to: cut, when: ...}"},
         BadScene{kHead2,
                  R"(liaisons: {b: {kind: bending, states: {whole: {rest_rad: ^9, final: true}}}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}

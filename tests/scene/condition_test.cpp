@@ -517,7 +517,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "no matter, port or links are named 'leaf'",
                      "it stands in a part: write w.leaf[0].position_x_m"},
         BadCondition{"^m.position_x_m > 2", "one MAT or one link may be asked for, and 'm' has 3",
-                     "pick one: m[0].position_x_m"},
+                     "pick one: m[0].position_x_m, the whole expression in quotes"},
         BadCondition{"^m[7].position_x_m > 2", "'m' has the MATs 0 to 2, got 7", ""},
         BadCondition{"^m[1].position_z_m > 2",
                      "a MAT has no quantity 'position_z_m' that others may ask for",

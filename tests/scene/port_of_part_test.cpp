@@ -98,7 +98,7 @@ matter:
   b: {kind: mass, mass_kg: 1, at_m: [9, 9]}
   keys: {part: k, repeat: {count: 16, translate_m: [1, 0]}}
 )",
-                 "missing key 'role' in port 'f' of part 'k'", ""},
+                 "missing key 'role' in port 'f' of part 'k'", "one of mass, liaison"},
         BadScene{
             kHead2,
             R"(parts: {k: {ports: {f: {device: d, axes: [0], role: mass, at_m: [0, 0]}}}}

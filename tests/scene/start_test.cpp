@@ -190,7 +190,8 @@ INSTANTIATE_TEST_SUITE_P(
             "'spin_rad_per_s' in matter 'a' must be a number, got a sequence", ""},
         BadScene{kHead3,
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0], spin_rad_per_s: ^3}\n",
-                 "'spin_rad_per_s' in matter 'a' must have 3 numbers, got 1", ""},
+                 "'spin_rad_per_s' in matter 'a' must have 3 numbers, got 1",
+                 "write 3 numbers [x, y, z]"},
         BadScene{
             kHead2, "matter:\n  a: {kind: mass, at_m: [0, 0], fixed: true, spin_rad_per_s: ^3}\n",
             "what is fixed has no spin: 'spin_rad_per_s' in matter 'a' contradicts 'fixed'", ""},
@@ -216,6 +217,38 @@ INSTANTIATE_TEST_SUITE_P(
                  "matter:\n  a: {kind: mass, mass_kg: 1, at_m: [0, 0], displacement_m: ^\"x_m\"}\n",
                  "'displacement_m' in matter 'a' must be 2 formulas, one for each axis, got 'x_m'",
                  ""},
+        BadScene{kHead2,
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^[if(index == 0, 0.01, 0), 0]}
+)",
+                 "'velocity_m_per_s' in matter 'a' must be 2 formulas, one for each axis, got 4",
+                 "put quotes around a formula with commas"},
+        BadScene{kHead1,
+                 R"(matter:
+  a: {kind: mass, mass_kg: 1, at_m: 0, displacement_m: [max^(x_m]}
+)",
+                 "'displacement_m' in matter 'a' has a '(' that is never closed",
+                 "put quotes around a formula with commas"},
+        BadScene{kHead2,
+                 R"(parts:
+  p:
+    parameters: {a: 1}
+    matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0], displacement_m: [-sin(^$a), 0]}}
+matter: {u: {part: p}}
+)",
+                 "'displacement_m' in matter 'm' of part 'p' has a '$'",
+                 "$name is a whole value alone: write parameters: {name: $name}, and name in the "
+                 "formula"},
+        BadScene{kHead2,
+                 R"(parts:
+  p:
+    parameters: {a: 1}
+    matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: {b: ^$a * 1}, displacement_m: [b, 0]}}
+matter: {u: {part: p}}
+)",
+                 "a value in part 'p' has a '$'",
+                 "$name is a whole value alone: write parameters: {name: $name}, and name in the "
+                 "formula"},
         BadScene{kHead2,
                  R"(matter:
   a: {kind: mass, mass_kg: 1, at_m: [0, 0], velocity_m_per_s: ^["1 / x_m", 0]}

@@ -236,7 +236,17 @@ matter:
 )",
             "a box lies along the axes of the scene: a part that has one is turned by quarters "
             "of a circle about them",
-            ""},
+            "turn it by a multiple of 90 degrees, or draw it as a polyline of its corners with "
+            "closed: true"},
+        BadScene{
+            kHead3,
+            R"(parts: {p: {matter: {^b: {kind: box, center_m: [0, 0, 0], size_m: [1, 1, 1]}}}}
+matter:
+  a: {part: p, rotate: {axis: z, deg: 30}}
+)",
+            "a box lies along the axes of the scene: a part that has one is turned by quarters "
+            "of a circle about them",
+            "turn it by a multiple of 90 degrees, or take a plane for the side that is touched"},
         BadScene{kLinked,
                  R"(  f: {kind: plane, at_m: [0, 0], normal: y}
 links:

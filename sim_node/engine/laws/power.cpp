@@ -23,7 +23,7 @@ void Power::check(const std::string& name) const {
       exponent >= 0.0 && exponent <= kMaxExponent && 2.0 * exponent == std::floor(2.0 * exponent),
       name + ": exponent",
       "a multiple of 0.5 from 0 to 16, which is computed by multiplication and square root alone; "
-      "give any other power as a table");
+      "an expression or a table has any other power");
 }
 
 double Power::potential(double /*distance*/, double elongation) const noexcept {

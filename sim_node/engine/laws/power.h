@@ -29,7 +29,8 @@ struct Power {
                    .lowest = 0.0,
                    .highest = kMaxExponent,
                    .multiple_of = 0.5,
-                   .hint = "give any other power as a table"},
+                   .hint = "an expression has any power, as \"3 * sign(elongation_m) * "
+                           "abs(elongation_m)^1.3\"; a dissipation asks for speed_m_per_s"},
           law.exponent);
   }
 

@@ -53,7 +53,7 @@ constexpr std::array<std::pair<const char*, Operation>, 6> kComparisons{{
 }};
 
 /// What other languages write, and what is written here.
-constexpr std::array<std::pair<const char*, const char*>, 7> kForeign{{
+constexpr std::array<std::pair<const char*, const char*>, 8> kForeign{{
     {"&&", "write 'and'"},
     {"||", "write 'or'"},
     {"!", "write 'not'"},
@@ -61,7 +61,11 @@ constexpr std::array<std::pair<const char*, const char*>, 7> kForeign{{
     {"**", "write '^'"},
     {"?", "write if(condition, value, other value)"},
     {":", "write if(condition, value, other value)"},
+    {"$", "$name is a whole value alone: write parameters: {name: $name}, and name in the formula"},
 }};
+
+constexpr const char* kBehindNumber =
+    "to multiply, write '*'; a number has no unit, for names have the units";
 
 const FunctionWord* find_function(std::string_view word) {
   const auto* const found =
@@ -288,7 +292,7 @@ class Parser {
       throw Fault{offset, "has a number that a computer cannot hold", {}};
     offset_ += static_cast<std::size_t>(end - begin);
     if (offset_ < text_.size() && (is_letter(text_[offset_]) || text_[offset_] == '.'))
-      throw Fault{offset_, "has something right behind a number", "to multiply, write '*'"};
+      throw Fault{offset_, "has something right behind a number", kBehindNumber};
     add({ExpressionWord::Kind::kNumber, number, {}, Operation::kAdd, offset});
     return {Type::kNumber, offset};
   }
@@ -370,8 +374,12 @@ class Parser {
     while (offset_ + length < text_.size() &&
            (static_cast<unsigned char>(text_[offset_ + length]) & 0xc0) == 0x80)
       ++length;
-    throw Fault{
-        offset_, "does not expect '" + std::string(text_.substr(offset_, length)) + "' here", {}};
+    const std::size_t before = text_.substr(0, offset_).find_last_not_of(" \t\n");
+    const bool is_behind_number =
+        is_letter(text_[offset_]) && before != std::string_view::npos && is_digit(text_[before]);
+    throw Fault{offset_,
+                "does not expect '" + std::string(text_.substr(offset_, length)) + "' here",
+                is_behind_number ? kBehindNumber : ""};
   }
 
   void emit(Operation operation, std::size_t offset) {
@@ -440,9 +448,18 @@ std::optional<Expression> parse_expression(const Value& text, const std::string&
     expression.words = parser.take_words();
     return expression;
   } catch (const Fault& fault) {
-    problems.error(text.place_in_text(fault.offset), what + " " + fault.message, fault.hint);
+    const std::string hint = fault.hint.empty() ? hint_for_commas({text}) : fault.hint;
+    problems.error(text.place_in_text(fault.offset), what + " " + fault.message, hint);
     return std::nullopt;
   }
+}
+
+std::string hint_for_commas(const std::vector<Value>& texts) {
+  const auto is_open = [](const Value& text) {
+    return !text.quoted() &&
+           std::ranges::count(text.text(), '(') > std::ranges::count(text.text(), ')');
+  };
+  return std::ranges::any_of(texts, is_open) ? "put quotes around a formula with commas" : "";
 }
 
 bool is_free_name(const std::string& word) {

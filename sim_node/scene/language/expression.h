@@ -48,6 +48,10 @@ struct Expression {
 std::optional<Expression> parse_expression(const config::Value& text, const std::string& what,
                                            config::Problems& problems);
 
+/// The hint for texts of which one ends within brackets without quotes, as `max(a, 1)` does in a list; empty
+/// for all else.
+std::string hint_for_commas(const std::vector<config::Value>& texts);
+
 /// True if a word may be the name of a parameter: letters, digits and '_', first a letter, and no
 /// word of the language.
 bool is_free_name(const std::string& word);

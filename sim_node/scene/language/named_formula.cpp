@@ -117,8 +117,10 @@ AxisFormulas read_axis_formulas(const Value& value, const std::string& what, int
   const bool is_list = value.kind() == Value::Kind::kSequence;
   const std::vector<Value> texts = is_list ? value.items() : std::vector<Value>{value};
   if (texts.size() != static_cast<std::size_t>(space)) {
-    problems.error(value.place(), what + " must be " + axes_text(space) + or_else + ", got " +
-                                      (is_list ? std::to_string(texts.size()) : value.described()));
+    problems.error(value.place(),
+                   what + " must be " + axes_text(space) + or_else + ", got " +
+                       (is_list ? std::to_string(texts.size()) : value.described()),
+                   hint_for_commas(texts));
     return formulas;
   }
   for (std::size_t axis = 0; axis < texts.size(); ++axis) {

@@ -92,8 +92,12 @@ const char* beyond_farthest(const std::string& key) {
 
 }  // namespace
 
-Vec3 required_point(config::MappingReader& reader, const std::string& key, int space) {
-  const std::vector<double> numbers = reader.required_numbers(key, static_cast<std::size_t>(space));
+Vec3 required_point(config::MappingReader& reader, const std::string& key, int space,
+                    const std::string& example) {
+  const std::string hint =
+      example.empty() ? "write " + coordinates_text(space) : "for example " + example;
+  const std::vector<double> numbers =
+      reader.required_numbers(key, static_cast<std::size_t>(space), hint);
   Vec3 point = Vec3::Zero();
   for (int i = 0; i < space; ++i) {
     point[i] = numbers[static_cast<std::size_t>(i)];
@@ -104,9 +108,9 @@ Vec3 required_point(config::MappingReader& reader, const std::string& key, int s
 }
 
 Vec3 optional_point(config::MappingReader& reader, const std::string& key, const Vec3& fallback,
-                    int space) {
+                    int space, const std::string& example) {
   reader.optional_value(key);
-  return reader.has(key) ? required_point(reader, key, space) : fallback;
+  return reader.has(key) ? required_point(reader, key, space, example) : fallback;
 }
 
 std::vector<Vec3> required_points(config::MappingReader& reader, const std::string& key, int space,

@@ -13,9 +13,12 @@ namespace cordis::scene {
 inline constexpr double kFarthest = 1.0e6;
 
 /// A point of `space` numbers, in 1-D a plain number; components beyond the space are 0.
-engine::Vec3 required_point(config::MappingReader& reader, const std::string& key, int space);
+/// @param example  such a point, for who wrote another number of numbers
+engine::Vec3 required_point(config::MappingReader& reader, const std::string& key, int space,
+                            const std::string& example = {});
 engine::Vec3 optional_point(config::MappingReader& reader, const std::string& key,
-                            const engine::Vec3& fallback, int space);
+                            const engine::Vec3& fallback, int space,
+                            const std::string& example = {});
 
 /// One point or a sequence of points: [x, y] or [[x, y], [x, y]], in 1-D x or [x, x].
 /// Never empty; a single point at 0 after a problem.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -156,6 +157,16 @@ class Entries {
   Dice dice_;
 };
 
+/// Which of the states that are reached should lead to one that is not: the first without an exit.
+const std::string& state_before(const StateMachine& state_machine,
+                                const std::vector<bool>& reached) {
+  for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
+    const LinkState& state = state_machine.states[s];
+    if (reached[s] && state.first_exit == state.last_exit) return state.name;
+  }
+  return state_machine.states[state_machine.start].name;
+}
+
 void check_states(const StateMachine& state_machine, const StateMachinePlaces& places,
                   const std::string& what, config::Problems& problems) {
   std::vector<bool> reached(state_machine.states.size(), false);
@@ -170,16 +181,20 @@ void check_states(const StateMachine& state_machine, const StateMachinePlaces& p
       reached[target] = true;
     }
   }
+  const bool all_reached = std::ranges::all_of(reached, std::identity{});
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const LinkState& state = state_machine.states[s];
     const bool acts = state.stiffness > 0.0 || state.viscosity > 0.0 || !is_linear(state) ||
                       !is_none(state.dissipation);
     if (!reached[s]) {
-      problems.error(places.states[s].place, "state '" + state.name + "' of " + what +
-                                                 " cannot be reached from its start, '" +
-                                                 state_machine.states[state_machine.start].name +
-                                                 "'");
-    } else if (acts && !places.states[s].is_final && state.first_exit == state.last_exit) {
+      problems.error(places.states[s].place,
+                     "state '" + state.name + "' of " + what +
+                         " cannot be reached from its start, '" +
+                         state_machine.states[state_machine.start].name + "'",
+                     "give '" + state_before(state_machine, reached) +
+                         "' the exit {to: " + state.name + ", when: ...}");
+    } else if (all_reached && acts && !places.states[s].is_final &&
+               state.first_exit == state.last_exit) {
       problems.warning(places.states[s].place,
                        "no exit leads out of state '" + state.name + "' of " + what,
                        "if that is meant, write final: true");

@@ -34,7 +34,7 @@ class FieldReader {
         formulas_(formulas) {}
 
   void operator()(const LawField& field, double& value) {
-    const Range range{field.lowest, field.highest, field.lowest_excluded};
+    const Range range{field.lowest, field.highest, field.lowest_excluded, field.hint};
     if (field.follows) {
       reader_.required_value(field.key);
       const ChangingNumber changing =

@@ -45,6 +45,12 @@ std::string kind_by_keys(const Value& definition) {
   return looks_like_state_machine(definition) ? "state_machine" : "";
 }
 
+/// What to do where a kind lacks one of its numbers.
+std::string hint_without(const std::string& kind, const std::string& key) {
+  if (kind != "spring_damper") return {};
+  return std::string("give it, or write kind: ") + (key == kViscosity ? "spring" : "damper");
+}
+
 /// The definition with overrides in the place of its plain keys.
 Value with_overrides(const Value& definition, const ParameterOverrides& overrides) {
   Value changed = definition;
@@ -76,7 +82,8 @@ class LiaisonReader {
     if (kind.empty() || reader.has("kind")) {
       std::vector<std::string> words;
       for (const LiaisonKind& known : kLiaisonKinds) words.emplace_back(known.name);
-      kind = reader.required_choice("kind", words);
+      kind = reader.required_choice("kind", words,
+                                    "; a liaison with states or a law, as elasticity, needs none");
     }
     reader.optional_value("kind");
     if (!reader.ok()) return law;
@@ -122,7 +129,7 @@ class LiaisonReader {
     const double fallback = maxwell ? 1.0 : 0.0;
     const auto required = [&](const char* key) {
       AskedOutside outside{liaisons_.signals(), law.references};
-      reader.required_value(key);
+      reader.required_value(key, hint_without(kind_name, key));
       return optional_changing(reader, key, fallback, range, parameters, outside, problems_);
     };
     ChangingNumber stiffness;
@@ -195,7 +202,7 @@ class LiaisonReader {
         if (reader.has(key)) reader.error_at(key, "a " + kind + " has no '" + key + "'");
         return ChangingNumber{};
       }
-      if (is_required) reader.required_value(key);
+      if (is_required) reader.required_value(key, hint_without(kind, key));
       return optional_changing(reader, key, 0.0,
                                key == kRestLength ? Range{} : Range::not_negative(), parameters,
                                outside, problems_);

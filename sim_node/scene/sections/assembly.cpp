@@ -49,9 +49,14 @@ bool Assembly::add(GeneratedMatter matter, const config::Place& place) {
     return false;
   }
   if (!open_parts.empty() && !put(matter)) {
-    problems.error(place,
-                   "a box lies along the axes of the scene: a part that has one is turned by "
-                   "quarters of a circle about them");
+    problems.error(
+        place,
+        "a box lies along the axes of the scene: a part that has one is turned by "
+        "quarters of a circle about them",
+        scene.space() == 2
+            ? "turn it by a multiple of 90 degrees, or draw it as a polyline of its "
+              "corners with closed: true"
+            : "turn it by a multiple of 90 degrees, or take a plane for the side that is touched");
     return false;
   }
   for (engine::Surface& surface : matter.surfaces) surface.mat += mat_count();

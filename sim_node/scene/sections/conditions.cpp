@@ -170,7 +170,8 @@ class ConditionReader {
     if (picked->count() != 1) {
       fail("one MAT or one link may be asked for, and '" + reference_->owner + "' has " +
                std::to_string(picked->count()),
-           "pick one: " + assembly_.names.word_of(first, is_link) + "." + reference_->word);
+           "pick one: " + assembly_.names.word_of(first, is_link) + "." + reference_->word +
+               ", the whole expression in quotes");
       return {};
     }
     Variable variable;

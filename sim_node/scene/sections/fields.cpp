@@ -1,6 +1,7 @@
 // sim_node/scene/sections/fields.cpp
 #include "sim_node/scene/sections/fields.h"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -19,6 +20,9 @@ namespace {
 using config::MappingReader;
 using config::Value;
 using engine::MatKind;
+
+/// By dimension.
+constexpr std::array<const char*, 3> kExamplesOfGravity{{"-9.81", "[0, -9.81]", "[0, 0, -9.81]"}};
 
 /// True if a field has a value at 0 s; a problem where it has none. That of one that asks for variables is known in a run.
 bool has_start(MappingReader& reader, const char* key, const AxisFormulas& formulas) {
@@ -118,7 +122,8 @@ WorldFields read_world(const Value& section, const std::set<std::string>& signal
   const Value gravity = reader.optional_value("gravity_m_per_s2");
   scene.gravity_changes = gravity.exists() && has_formula(gravity);
   if (!scene.gravity_changes) {
-    scene.network.gravity = optional_point(reader, "gravity_m_per_s2", engine::Vec3::Zero(), space);
+    scene.network.gravity = optional_point(reader, "gravity_m_per_s2", engine::Vec3::Zero(), space,
+                                           kExamplesOfGravity[static_cast<std::size_t>(space) - 1]);
   }
   scene.medium_flows = reader.optional_value("flow_m_per_s").exists();
   const Value viscosity = reader.optional_value(kViscosity);

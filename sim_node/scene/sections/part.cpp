@@ -5,6 +5,7 @@
 
 #include "node/config/mapping_reader.h"
 #include "node/config/nearest_word.h"
+#include "sim_node/scene/language/expression.h"
 #include "sim_node/scene/language/name.h"
 
 namespace cordis::scene {
@@ -47,6 +48,10 @@ class Substitution {
     const std::string name = value.text().substr(1);
     const auto known = values_.find(name);
     if (known != values_.end()) return known->second;
+    if (name.find_first_of(" */+^()") != std::string::npos) {
+      parse_expression(value, "a value in part '" + part_.name + "'", problems_);  // refuses the $
+      return value;
+    }
     problems_.error(value.place(), "part '" + part_.name + "' has no parameter '" + name + "'",
                     config::did_you_mean(name, names()));
     return value;

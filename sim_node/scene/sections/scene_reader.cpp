@@ -36,7 +36,8 @@ void read_accuracy(const Value& section, Scene& scene, config::Problems& problem
   config::MappingReader reader(section, "accuracy", problems);
   Accuracy accuracy;
   accuracy.tolerance = reader.required_number("tolerance", Range::between(1e-9, 1.0));
-  accuracy.band_hz = reader.required_number("band_hz", Range::between(1e-3, kHighestStepRate));
+  accuracy.band_hz = reader.required_number("band_hz", Range::between(1e-3, kHighestStepRate),
+                                            "the highest frequency that the tolerance holds for");
   accuracy.contact_energy =
       reader.optional_number("contact_energy", accuracy.contact_energy, Range::between(1e-9, 1.0));
   accuracy.over_s = reader.optional_number("over_s", 0.0, Range::between(0.0, kLongestPromise));

@@ -372,8 +372,8 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
                     "a signal is of one MAT or one link, and " +
                         (subject.text().empty() ? "this list" : "'" + subject.text() + "'") +
                         " has " + std::to_string(picked->count()),
-                    "pick one: " + assembly.names.word_of(picked->indices[0], is_link) +
-                        ", or take: largest, smallest, mean or sum");
+                    "pick one: \"" + assembly.names.word_of(picked->indices[0], is_link) +
+                        "\", or take: largest, smallest, mean or sum");
   }
   Owner owner = Owner::kScene;
   if (picked) owner = is_link ? owner_of(assembly.scene.network, picked->indices[0]) : Owner::kMat;
