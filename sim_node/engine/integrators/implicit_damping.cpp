@@ -115,17 +115,9 @@ void ImplicitDamping::begin_step(const MatArray& mats, const AlignedVector<doubl
   first_period_ = first;
   last_kick_ = last_kick;
   std::fill(constant_.begin(), constant_.end(), 0.0);
-  const auto centred = [&](std::uint32_t mat) {
-    return Vec3(mats.position(mat) - mats.layout().vector(extrapolated.data(), mat));
-  };
-  if (!is_1d_) {
-    for (std::uint32_t i = 0; i < mass_.size(); ++i)
-      column(middle_, i) = 2.0 * centred(i) - column(displacement_, i);
-    sine_ = find_turning(middle_, turning_);
-  }
   if (ports_.empty()) return;
   for (Port& port : ports_) {
-    port.centred = centred(port.mat);
+    port.centred = mats.position(port.mat) - mats.layout().vector(extrapolated.data(), port.mat);
     port.change = 2.0 * (port.centred - column(displacement_, port.mat));
   }
   find_drag_of_ports(begin_of_period() + kG, drag_at_first_);
@@ -150,6 +142,13 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     const Vec3 change = now - Vec3::Map(before + 4 * mat);
     return Vec3(now + ahead * change + (dt_ * dt_ / mass_[mat]) * column(constant_, mat));
   };
+  for (std::size_t i = 0; i < count; ++i) {
+    column(middle_, i) = column(displacement_, i);
+    if (mass_[i] > 0.0) column(middle_, i) += kick_at(i, 0.5);
+  }
+  for (const Port& port : ports_)
+    column(middle_, port.mat) = port.displacement(begin_of_period() + 1.0);
+  const double sine = find_turning(middle_, turning_);
   const double at_first = kG * (begin_of_period() + kG);
   for (std::size_t i = 0; i < count; ++i) {
     if (mass_[i] == 0.0) continue;
@@ -169,14 +168,13 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
     matrix_.solve(second_.data());
   };
   find_second(turning_);
-  if (!is_1d_) {
+  turns_fast_ = sine > kSlowTurn;
+  if (turns_fast_) {
     for (std::size_t i = 0; i < count; ++i) {
-      column(middle_, i) = mass_[i] > 0.0 ? column(second_, i) : column(displacement_, i);
+      if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
     }
-    for (const Port& port : ports_)
-      column(middle_, port.mat) = port.displacement(begin_of_period() + 1.0);
-    turns_fast_ = std::max(sine_, find_turning(middle_, turning_at_end_)) > kSlowTurn;
-    if (turns_fast_) find_second(turning_at_end_);
+    find_turning(middle_, turning_at_end_);
+    find_second(turning_at_end_);
   }
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = mass_[i] > 0.0

@@ -30,8 +30,7 @@ namespace cordis::engine {
 ///
 /// A damper pulls along its axis a at x(n), and turns meanwhile. At the moment n + c its ends part by a u + c k:
 /// c is g - 1/2 for u1 and 1/2 for u2. Ends that keep their length part by -k / 2 along, from what u2 goes
-/// across. k is found from 2 v(n) - v(n-1/2), where v(n) is that of the last period. The forces of this one do not
-/// count: others may carry them. Where by that or by u2 a damper turns by more than 0.01 rad, u2 is solved again with
+/// across. k is found from v and the kicks. Where a damper turns by more than 0.01 rad, u2 is solved again with
 /// the k of the first u2. So a heavy damper that turns keeps its length.
 ///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
@@ -50,7 +49,7 @@ class ImplicitDamping {
 
   /// Takes Z at the present positions; no force is constant over the period yet.
   /// @param displacement  dt v(n-1/2); before the first period dt v(0); of a port its last one
-  /// @param extrapolated  x(n) - dt v(n), stored as the MATs are [m]
+  /// @param extrapolated  of ports x(n) - dt v(n), stored as the MATs are [m]
   /// @param last_kick     kick() of the last step, which stays until the next; null: not known, and
   ///                      the forces change little
   /// @param first         this is the period from x(0)
@@ -144,7 +143,6 @@ class ImplicitDamping {
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   bool first_period_ = false;
-  double sine_ = 0.0;               // of the largest turn by which turning_ is
   bool turns_fast_ = false;         // a damper does: turning_at_end_ counts
   AlignedVector<double> first_;     // dt u1
   AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)
