@@ -83,7 +83,8 @@ std::vector<std::string> step_trouble_texts(const StepTroubles& troubles) {
 
 Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t epoch)
     : scene_(std::move(scene)),
-      world_(std::make_shared<const engine::Network>(scene_->network)),
+      world_(std::make_shared<const engine::Network>(
+          std::shared_ptr<const engine::NetworkDescription>(scene_, &scene_->network))),
       partners_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
       division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {

@@ -86,7 +86,7 @@ void check_network(const Scene& scene, const config::Place& integrator, const co
   }
   if (!check_integrator(scene, integrator, problems)) return;
   try {
-    const engine::Network network(scene.network);
+    engine::require_valid(scene.network);
   } catch (const std::invalid_argument& refusal) {
     problems.error(matter, std::string("this cannot be simulated: ") + refusal.what());
   }

@@ -1,7 +1,9 @@
 // tests/scene/surface_test.cpp -- planes, boxes, cylinders and polylines as a scene writes them.
 #include <cmath>
 #include <limits>
+#include <memory>
 
+#include "sim_node/engine/world.h"
 #include "tests/scene/bad_scene.h"
 
 namespace cordis::scene {
@@ -177,6 +179,28 @@ matter:
   EXPECT_EQ(surfaces[6].half_size, surfaces[5].half_size);
   EXPECT_EQ(scene.network.mats[surfaces[6].mat].position, Vec3(7.0, 0.0, 0.0));
   EXPECT_NO_THROW(engine::Network{scene.network});
+}
+
+/// A trapdoor holds a ball for a second, and lets it fall after.
+TEST(SurfaceMatter, OpensWhereTheStiffnessOfItsLiaisonEnds) {
+  const Scene scene = sound_scene(2, R"yaml(world: {gravity_m_per_s2: [0, -10]}
+liaisons:
+  gate: {kind: state_machine, stiffness_n_per_m: "if(time_s < 1, 600, 0)",
+         viscosity_n_s_per_m: "if(time_s < 1, 0.3, 0)", pulls: false, range: rest}
+matter:
+  marble: {kind: mass, ball: {mass_kg: 0.01, radius_m: 0.02}, at_m: [0, 0.0198]}
+  trapdoor: {kind: box, center_m: [0, -0.01], size_m: [0.2, 0.02]}
+links:
+  - {liaison: gate, between_sets: [marble, trapdoor]}
+)yaml");
+  engine::World world(std::make_shared<const engine::Network>(scene.network));
+  const auto run_to = [&](double time) {
+    while (static_cast<double>(world.step_count()) * scene.network.step < time) world.step();
+  };
+  run_to(0.99);
+  EXPECT_NEAR(world.position(0).y(), 0.02 - 0.1 / 600.0, 1e-5);
+  run_to(1.2);
+  EXPECT_NEAR(world.position(0).y(), 0.02 - 0.1 / 600.0 - 0.5 * 10.0 * 0.2 * 0.2, 0.003);
 }
 
 class BadSurface : public BadScenes {};

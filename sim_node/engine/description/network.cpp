@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/require.h"
 #include "sim_node/engine/description/bend_limits.h"
 #include "sim_node/engine/description/fingerprint.h"
@@ -421,7 +423,9 @@ void check_drives(const NetworkDescription& description) {
   }
 }
 
-void check(const NetworkDescription& description) {
+}  // namespace
+
+void require_valid(const NetworkDescription& description) {
   require(description.dimension >= 1 && description.dimension <= 3, "dimension", "1, 2 or 3");
   require(std::isfinite(description.step) && description.step > 0.0, "step", "finite and > 0");
   require_vector(description.gravity, description.dimension, "gravity");
@@ -455,8 +459,6 @@ void check(const NetworkDescription& description) {
   }
 }
 
-}  // namespace
-
 bool NetworkDescription::has_medium() const noexcept {
   return std::ranges::any_of(mats, [this](const Mat& mat) {
     return mat.kind == MatKind::kMass && medium_viscosity_on(mat) > 0.0;
@@ -486,10 +488,15 @@ Bend NetworkDescription::at_start(const Bend& bend) const noexcept {
   return started;
 }
 
-Network::Network(NetworkDescription description) : description_(std::move(description)) {
-  check(description_);
-  mass_count_ = description_.mass_count();
-  fingerprint_ = fingerprint_of(description_);
+Network::Network(NetworkDescription description)
+    : Network(std::make_shared<const NetworkDescription>(std::move(description))) {}
+
+Network::Network(std::shared_ptr<const NetworkDescription> description)
+    : description_(std::move(description)) {
+  CORDIS_ASSERT(description_ != nullptr);
+  require_valid(*description_);
+  mass_count_ = description_->mass_count();
+  fingerprint_ = fingerprint_of(*description_);
 }
 
 }  // namespace cordis::engine

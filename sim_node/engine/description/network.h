@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim_node/engine/core/vec.h"
@@ -184,20 +185,26 @@ struct NetworkDescription {
   Bend at_start(const Bend& bend) const noexcept;
 };
 
+/// O(MATs + liaisons).
+/// @throws std::invalid_argument naming the first MAT, link, state machine or set that is out of
+///         range or not finite, or that joins a MAT to itself or to one that does not exist; when
+///         no MAT is given; when dt^2 / m of a mass or Z / dt of a viscosity is not finite
+void require_valid(const NetworkDescription& description);
+
 /// A network of MATs (its nodes) and LIAs (its arcs), checked and laid out for stepping; immutable.
 /// [Luc90 IV Assembly]
 class Network {
  public:
-  /// @throws std::invalid_argument naming the first MAT, link, state machine or set that is out of
-  ///         range or not finite, or that joins a MAT to itself or to one that does not exist; when
-  ///         no MAT is given; when dt^2 / m of a mass or Z / dt of a viscosity is not finite
+  /// @throws std::invalid_argument as require_valid() does
   explicit Network(NetworkDescription description);
+  /// Shares a description. Precondition: it is not null.
+  explicit Network(std::shared_ptr<const NetworkDescription> description);
 
-  const NetworkDescription& description() const noexcept { return description_; }
-  int dimension() const noexcept { return description_.dimension; }
-  double step() const noexcept { return description_.step; }  ///< dt [s]
-  std::size_t mat_count() const noexcept { return description_.mats.size(); }
-  std::size_t link_count() const noexcept { return description_.links.size(); }
+  const NetworkDescription& description() const noexcept { return *description_; }
+  int dimension() const noexcept { return description_->dimension; }
+  double step() const noexcept { return description_->step; }  ///< dt [s]
+  std::size_t mat_count() const noexcept { return description_->mats.size(); }
+  std::size_t link_count() const noexcept { return description_->links.size(); }
   std::size_t mass_count() const noexcept { return mass_count_; }
 
   /// 64-bit hash of the whole description: equal for networks assembled from the same values in the
@@ -205,7 +212,7 @@ class Network {
   std::uint64_t fingerprint() const noexcept { return fingerprint_; }
 
  private:
-  NetworkDescription description_;
+  std::shared_ptr<const NetworkDescription> description_;
   std::size_t mass_count_;
   std::uint64_t fingerprint_;
 };
