@@ -1,4 +1,4 @@
-// tests/engine/overdamped_drive_test.cpp -- heavy dampers of `leapfrog` at matter that a function of time moves.
+// tests/engine/overdamped_drive_test.cpp -- heavy dampers of `leapfrog` beside driven matter.
 #include <algorithm>
 #include <array>
 #include <cmath>
