@@ -64,7 +64,6 @@ bool SceneLoop::is_recorded_by(const std::string& node) const {
 }
 
 void SceneLoop::wait_for_recorder(const std::string& node) {
-  if (clock_ != config::Clock::kRealtime) frames_.keep_every_frame();
   const std::string reader = node + "/topics";  // the participant of a recorder that reads
   const auto end = std::chrono::steady_clock::now() + kLongestReaderWait;
   while (!is_recorded_by(reader)) {
@@ -74,6 +73,7 @@ void SceneLoop::wait_for_recorder(const std::string& node) {
                  kLongestReaderWait.count());
     return;
   }
+  if (clock_ != config::Clock::kRealtime) frames_.keep_every_frame();
 }
 
 bool SceneLoop::finished() const noexcept {

@@ -98,8 +98,7 @@ class TableExport {
     if (ticks >= 0.999 && std::abs(ticks - std::round(ticks)) < 1e-3) return;
     note_ = fmt::format(
         "--every {} is no whole number of gesture periods of {:.6g} s: each row is the first of "
-        "the "
-        "take at or after its time",
+        "the take at or after its time",
         every, 1.0 / scene_.description.gesture_rate_hz());
   }
 

@@ -14,7 +14,7 @@ MissingNumbers::Noted MissingNumbers::note(const WriterId& id, std::uint32_t str
   if (sequence > writer.sequence + 1 && !(is_exclusive_ && has_yielded(writer)))
     noted.missing = sequence - writer.sequence - 1;
   arrival = ++arrivals_;
-  writer.sequence = sequence;
+  writer.sequence = std::max(writer.sequence, sequence);
   return noted;
 }
 

@@ -72,7 +72,7 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
   // Two presences may deliver at once while one replaces the other.
   std::mutex in_use;  // of all below but `lost`
   RawMessage message;
-  std::map<WriterId, Known> writers;  // so far
+  std::map<WriterId, Known> writers;  // that were found
   MissingNumbers numbers{topic.exclusive};
   std::atomic<std::uint64_t> lost{0};
 
@@ -105,14 +105,17 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
     presence = next_presence;
   }
 
-  const Known& known(const WriterId& writer) {
-    const auto [entry, is_new] = writers.try_emplace(writer);
-    if (!is_new) return entry->second;
+  /// A writer that is not found yet is looked for again at its next message.
+  Known known(const WriterId& writer) {
+    const auto entry = writers.find(writer);
+    if (entry != writers.end()) return entry->second;
     std::optional<FoundWriter> found = next_presence->writer(writer);
     if (!found && presence != nullptr && presence != next_presence)
       found = presence->writer(writer);
-    if (found) entry->second = {.is_own = found->topic == topic, .strength = found->strength};
-    return entry->second;
+    if (!found) return {};
+    const Known now{.is_own = found->topic == topic, .strength = found->strength};
+    writers.emplace(writer, now);
+    return now;
   }
 
   void on_sample_lost(fast::DataReader*, const fast::SampleLostStatus& status) override {
@@ -126,7 +129,7 @@ struct RawReader::Impl final : fast::DataReaderListener, Endpoint {
       while (from->take_next_sample(&message, &info) == ReturnCode_t::RETCODE_OK) {
         if (!info.valid_data) continue;
         const WriterId writer = writer_id(info.sample_identity.writer_guid());
-        const Known& from_whom = known(writer);
+        const Known from_whom = known(writer);
         if (!from_whom.is_own) continue;
         const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
         const MissingNumbers::Noted noted =

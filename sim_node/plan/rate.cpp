@@ -75,7 +75,7 @@ bool loads_modes(const engine::NetworkDescription& network, const LiaisonGraph& 
 }
 
 /// The longest step [s] that modes are certified at, with what is fastened to them, of the multiples of a rate.
-/// Each step has modes of its own.
+/// Each step has modes of its own. Where none is up to the highest rate, a step shorter than that of it.
 double longest_modal_step(engine::NetworkDescription network, double gesture_rate_hz,
                           double highest_hz) {
   const auto is_certified = [&](double multiple) {

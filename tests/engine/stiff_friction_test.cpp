@@ -89,6 +89,44 @@ TEST(StiffFriction, OfADryContactEndsAllMotion) {
   }
 }
 
+/// Beside a heavy linear damper, which is implicit, friction opposes the motion, and all comes to rest.
+TEST(StiffFriction, OfADryContactOpposesTheMotionBesideHeavyDampers) {
+  for (const double viscosity : {1e3, 3e4, 1e6}) {
+    for (const double friction : {5.0, 500.0, 2e3, 1e5}) {
+      NetworkDescription scene = one_mass(with_friction(power_of_speed(friction, 0.0)), 1.0, 1e-3);
+      scene.links.push_back({0, 1, 0.0, viscosity, 0.0});
+      ASSERT_TRUE(engine::damps_implicitly(scene));
+      World world = make_world(scene);
+      run(world, 1);
+      for (int n = 0; n < 300; ++n) {
+        const double way = world.position(1).x() - 1.0;
+        world.step();
+        EXPECT_LE(std::abs(world.position(1).x() - 1.0 - way), 1e-3)
+            << viscosity << ' ' << friction;
+        if (n == 0) {
+          EXPECT_GT(world.tension_of(0), -1e-9) << viscosity << ' ' << friction;
+        }
+      }
+      EXPECT_NEAR(world.velocity(1).x(), 0.0, 1e-9) << viscosity << ' ' << friction;
+    }
+  }
+}
+
+/// A mass that no damper holds sticks as it does in a scene without any.
+TEST(StiffFriction, OfADryContactSticksWhereOthersAreDamped) {
+  NetworkDescription scene = one_mass(with_friction(power_of_speed(5.3, 0.0)), 1.0, 1e-3);
+  scene.mats.push_back(mass(1.0, Vec3(3.0, 0.0, 0.0)));
+  scene.links.push_back({0, 2, 0.0, 1e5, 0.0});
+  ASSERT_TRUE(engine::damps_implicitly(scene));
+  World world = make_world(scene);
+  run(world, 200);
+  for (int n = 0; n < 20; ++n) {
+    world.step();
+    EXPECT_NEAR(world.velocity(1).x(), 0.0, 1e-9);
+    EXPECT_NEAR(world.tension_of(0), 0.0, 1e-6);
+  }
+}
+
 /// It is carried along by a belt, and by one under a spring up to where that is stronger.
 TEST(StiffFriction, OfADryContactCarriesWithoutRinging) {
   NetworkDescription scene = one_mass(with_friction(power_of_speed(5.0, 0.0)), 0.0, 1e-3);

@@ -95,7 +95,17 @@ TEST(DrivenPlan, KnowsJumpsAndQuickSlides) {
       engine::TimeFunction jump;
       jump.formula[0] = (Term(0.05) * one(Operation::kSign, since)).program;
       scene.time_functions = {jump};
-      EXPECT_NEAR(plan::largest_drive_speed(scene), 0.1 / step, 0.05 / step) << moment;
+      EXPECT_NEAR(plan::largest_drive_speed(scene), 0.1 / step, 1e-3 / step) << moment;
+      // 0.1 m in three steps and in seven
+      for (const double steps : {3.0, 7.0}) {
+        engine::TimeFunction slide;
+        slide.formula[0] =
+            (Term(0.05) * two(Operation::kMax, Term(-1.0),
+                              two(Operation::kMin, Term(1.0), Term(2.0 / (steps * step)) * since)))
+                .program;
+        scene.time_functions = {slide};
+        EXPECT_NEAR(plan::largest_drive_speed(scene), 0.1 / (steps * step), 1e-3 / step) << moment;
+      }
     }
   }
 }

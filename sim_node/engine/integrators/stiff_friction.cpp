@@ -194,13 +194,13 @@ std::optional<double> root_near(TensionOverSpeed& curve, double speed, double ha
   return find_root(curve, half_mobility, free_speed, bracket);
 }
 
-/// The slope of the law at a speed [N s/m], over a small part of a scale of speeds.
+/// The slope at a speed of what dissipates [N s/m], over a small part of a scale of speeds.
 double slope_at(TensionOverSpeed& curve, double speed, double scale) noexcept {
   constexpr double kSmall = 1e-7;
   const double apart = kSmall * scale;
   if (!(apart > 0.0)) return 0.0;
   curve.find({speed - apart, speed + apart});
-  return (curve.tension(1) - curve.tension(0)) / (2.0 * apart);
+  return (curve.viscous(1) - curve.viscous(0)) / (2.0 * apart);
 }
 
 }  // namespace
@@ -262,7 +262,7 @@ void StiffFriction::choose(const NetworkDescription& network,
     if (dt_ <= steps_[l] || mobility == 0.0) continue;
     Solved solved;  // there is room for all
     solved.link = l;
-    solved.half_mobility = 0.5 * dt_ * mobility;
+    solved.half_mobility = solved.undamped_mobility = 0.5 * dt_ * mobility;
     solved_.push_back(solved);
     for (const std::uint32_t mat : {link.mat_a, link.mat_b}) {
       if (network.mats[mat].kind != MatKind::kMass) continue;
@@ -322,8 +322,12 @@ double StiffFriction::free_speed(const WorldState& world, const Around& around,
   }
   const double part = around.started ? 0.5 : 1.0;
   const auto moved = [&](std::uint32_t mat) {
+    // Of a driven port the extrapolated place counts, as its velocity at x(n).
+    if (!world.mats.is_mass(mat)) {
+      return Vec3(world.mats.position(mat) -
+                  world.mats.layout().vector(around.extrapolated.data(), mat));
+    }
     Vec3 moving = world.mats.position(mat) - world.mats.delayed(mat);
-    if (!world.mats.is_mass(mat)) return moving;
     Vec3 force = world.mats.force(mat) + world.port_inputs.external_force(mat);
     force += world.mats.force_of_medium(
         mat, world.mats.layout().vector(around.extrapolated.data(), mat));
@@ -350,27 +354,27 @@ double StiffFriction::speed_before(const WorldState& world, const Around& around
 /// @return its tension; that it has when no root is found
 double StiffFriction::solve_one(const WorldState& world, const Around& around, Solved& solved,
                                 bool first_round) noexcept {
+  constexpr double kFree = 0.9;  // of the mobility without implicit dampers
   const double free = free_speed(world, around, solved);
   const double before = speed_before(world, around, solved);
   TensionOverSpeed curve(world, solved.link);
+  double tension = solved.tension;
   // u + ahead (u - before) = s
   const auto solve_ahead = [&](double ahead) {
     const double later_free = free + ahead * (free - before);
     const double mobility = (1.0 + ahead) * solved.half_mobility;
     const std::optional<double> root = root_near(curve, solved.speed_of_law, mobility, later_free);
-    if (!root) return solved.tension;
+    if (!root) return;
+    solved.ahead = ahead;
     solved.speed_of_law = *root;
-    return (later_free - *root) / mobility;
+    tension = (later_free - *root) / mobility;
   };
-  if (first_round) solved.ahead = 0.0;
-  double tension = solve_ahead(solved.ahead);
-  if (first_round && around.started) {
+  solve_ahead(first_round ? 0.0 : solved.ahead);
+  const bool may_ring = around.started && solved.half_mobility > kFree * solved.undamped_mobility;
+  if (first_round && may_ring) {
     const double scale = std::abs(free) + std::abs(before) + std::abs(solved.speed_of_law);
     const double steepness = solved.half_mobility * slope_at(curve, solved.speed_of_law, scale);
-    if (steepness > 1.0) {
-      solved.ahead = 1.0 - 1.0 / steepness;
-      tension = solve_ahead(solved.ahead);
-    }
+    if (steepness > 1.0) solve_ahead(1.0 - 1.0 / steepness);
   }
   if (std::isfinite(tension)) solved.speed = free - solved.half_mobility * tension;
   return tension;

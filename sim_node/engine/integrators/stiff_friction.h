@@ -34,8 +34,8 @@ bool solves_stiff_friction(const NetworkDescription& network);
 ///
 ///     u = u_free - c tension(s),   u = (x(n+1) - x(n-1)) / 2 dt along the link
 ///
-/// all other forces given, by narrowing down the interval that holds the root. The law is taken at s = u, and
-/// where it is so steep that u would go past its root, later in the period: with z = c tension'(u) above 1,
+/// all other forces given, by narrowing down the interval that holds the root. The law is taken at s = u, unless it is
+/// so steep that u would go past its root. With z = c tension'(u) above 1 it is taken later in the period,
 ///
 ///     s = u + (1 - 1/z) (u - v(n-1/2)),    at v(n+1/2) where the law jumps
 ///
@@ -45,7 +45,8 @@ bool solves_stiff_friction(const NetworkDescription& network);
 /// side and branch of the extrapolated speed is taken, so that what sticks goes on sticking until
 /// it cannot. Links that share a mass are solved in turn, each with the last tensions of the
 /// others, until these no longer change, at most kMaxRounds times. Where linear dampers are
-/// implicit (ImplicitDamping), u is their w, and 1/m its answer to the tension through all of them.
+/// implicit (ImplicitDamping), u is their w, and 1/m its answer to the tension through all of them. A link whose ends
+/// they hold themselves, by more than a tenth of that answer, has s = u.
 /// The tensions are constant over the period, which with dampers of Z dt / m above 1 makes what
 /// drags on friction of first order. In the step in which a state is entered its speed is 0, as
 /// everywhere.
@@ -74,11 +75,12 @@ class StiffFriction {
  private:
   struct Solved {
     std::uint32_t link = 0;
-    double half_mobility = 0.0;  // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
-    double tension = 0.0;        // [N]
-    double speed = 0.0;          // centred [m/s]
-    double speed_of_law = 0.0;   // at which the law is taken [m/s]
-    double ahead = 0.0;          // (speed_of_law - speed) / (speed - speed at the half step before)
+    double half_mobility = 0.0;      // dt / 2 (1/m_a + 1/m_b), or that of implicit dampers [s/kg]
+    double undamped_mobility = 0.0;  // without these [s/kg]
+    double tension = 0.0;            // [N]
+    double speed = 0.0;              // centred [m/s]
+    double speed_of_law = 0.0;       // at which the law is taken [m/s]
+    double ahead = 0.0;  // (speed_of_law - speed) / (speed - speed at the half step before)
     double extrapolated_speed = 0.0;  // [m/s]
     double viscous_power = 0.0;       // of the tension with the extrapolated speed [W]
     double length = 0.0;              // [m]

@@ -59,7 +59,11 @@ double speed_between(const NetworkDescription& network, const TimeFunction& func
     if (!middle.place.allFinite() || !(time > low.time && time < high.time)) return 0.0;
     (mean_speed(low, middle) > mean_speed(middle, high) ? high : low) = middle;
   }
-  return (high.place - low.place).norm() / network.step;
+  // A whole step about the middle: it has all of a jump, and of a slide its full speed.
+  const double middle = 0.5 * (low.time + high.time);
+  const engine::Vec3 way = value_at(function, middle + 0.5 * network.step) -
+                           value_at(function, middle - 0.5 * network.step);
+  return way.norm() / network.step;
 }
 
 double largest_speed(const NetworkDescription& network, const TimeFunction& function) {

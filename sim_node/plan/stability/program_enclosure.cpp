@@ -131,8 +131,8 @@ class Evaluation {
       f.jumps = false;
     }
     if (f.jumps || f.fails || std::isfinite(size_of(f.value)) || !box_is_finite()) return f;
-    constexpr double kOverflow = std::numeric_limits<double>::infinity();
-    const bool has_no_number = f.value.low == kOverflow || f.value.high == -kOverflow;
+    const bool has_no_number = (std::isinf(f.value.low) && f.value.low > 0.0) ||
+                               (std::isinf(f.value.high) && f.value.high < 0.0);
     if (is_of_variables_alone(f) && !has_no_number) return f;
     const bool moves = f.moves;
     f = has_no_number || (moves && !is_quantity) ? kFailing : kUnknown;
@@ -523,8 +523,7 @@ class StepSearch {
   /// The value and the slope at a place.
   struct Place {
     double value;  // 0 for what is no finite number
-    double
-        slope;  // 0 where none is known: where a condition just changes, or a part is no finite number
+    double slope;  // 0 where a condition just changes, or a part is no finite number
   };
   double value_at(const LinkBox& line, double place) const {
     engine::LinkQuantities now{};
