@@ -18,12 +18,19 @@ using config::Value;
 namespace {
 
 /// True if a liaison of the rest length 0 would pull where its ends meet, as one does whose rest length is a formula.
-/// What it asks for is 0.
+/// What it asks for is 0. One with problems has no states, or a law without code.
 bool pulls_where_ends_meet(const engine::NetworkDescription& network, std::uint32_t state_machine) {
+  if (state_machine >= network.state_machines.size()) return false;
   const engine::StateMachine& machine = network.state_machines[state_machine];
+  if (machine.start >= machine.states.size()) return false;
   const auto* law = std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
-  if (law == nullptr) return false;
-  const std::vector<double> all_0(network.variables.size(), 0.0);
+  if (law == nullptr || law->program.code.empty()) return false;
+  std::size_t variables = 0;
+  for (const engine::Instruction& instruction : law->program.code) {
+    if (instruction.operation == engine::Operation::kVariable)
+      variables = std::max<std::size_t>(variables, instruction.slot + 1);
+  }
+  const std::vector<double> all_0(variables, 0.0);
   const double tension =
       engine::value_of(law->program, engine::LinkQuantities{}, nullptr, 0.0, all_0.data());
   return std::isfinite(tension) && tension != 0.0;
