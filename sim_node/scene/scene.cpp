@@ -14,10 +14,10 @@ namespace cordis::scene {
 namespace {
 
 engine::LiaisonKind kind_of(LinkKind kind) {
-  constexpr std::array<engine::LiaisonKind, kLinkKindCount> kinds{
+  constexpr std::array<engine::LiaisonKind, kLinkKindCount> kKinds{
       engine::LiaisonKind::kLink, engine::LiaisonKind::kStateLink,
       engine::LiaisonKind::kMaxwellLink, engine::LiaisonKind::kBend};
-  return kinds[static_cast<std::size_t>(kind)];
+  return kKinds[static_cast<std::size_t>(kind)];
 }
 
 /// The liaison that links or sets are made of; nullptr where there is none.

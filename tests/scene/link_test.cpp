@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
-#include "tests/support/filled.h"
 
 namespace cordis::scene {
 namespace {
@@ -123,25 +122,6 @@ TEST(Links, WarnOfEndsThatCoincideUnderARestLength) {
   EXPECT_EQ(problems_of(1, apart), "");
   EXPECT_EQ(problems_of(2, "  - {liaison: s, between: [\"a[0]\", \"a[1]\"]}\n"), "");
   EXPECT_EQ(problems_of(2, "  - {liaison: s, between: [\"a[0]\", \"a[2]\"], rest_m: 0.1}\n"), "");
-}
-
-TEST(Links, WarnOfEndsThatCoincideUnderARestLengthThatIsAFormula) {
-  for (const std::string rest : {"0.1 + 0.01 * sin(time_s)", "0.01 * sin(time_s)"}) {
-    config::Problems problems;
-    const std::string text = test::filled(R"yaml(cordis: 1
-space: 2
-step: {rate_hz: 1000}
-liaisons: {d: {kind: spring, stiffness_n_per_m: 100, rest_m: "<rest>"}}
-matter: {m: {kind: points, mass_kg: 1, at_m: [[0, 0], [0, 0]]}}
-links: [{liaison: d, between: ["m[0]", "m[1]"]}]
-)yaml",
-                                          {{"rest", rest}});
-    load_scene_text(text, "t", problems);
-    const bool is_0_at_start = rest.starts_with("0.01");
-    EXPECT_EQ(problems.text().find("although its law has one where they meet") == std::string::npos,
-              is_0_at_start)
-        << problems.text();
-  }
 }
 
 }  // namespace

@@ -2,10 +2,7 @@
 #include "sim_node/scene/sections/links.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <variant>
-#include <vector>
 
 #include "sim_node/scene/language/name.h"
 #include "sim_node/scene/sections/bends.h"
@@ -17,37 +14,16 @@ using config::Value;
 
 namespace {
 
-/// True if a liaison of the rest length 0 would pull where its ends meet, as one does whose rest length is a formula.
-/// What it asks for is 0. One with problems has no states, or a law without code.
-bool pulls_where_ends_meet(const engine::NetworkDescription& network, std::uint32_t state_machine) {
-  if (state_machine >= network.state_machines.size()) return false;
-  const engine::StateMachine& machine = network.state_machines[state_machine];
-  if (machine.start >= machine.states.size()) return false;
-  const auto* law = std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
-  if (law == nullptr || law->program.code.empty()) return false;
-  std::size_t variables = 0;
-  for (const engine::Instruction& instruction : law->program.code) {
-    if (instruction.operation == engine::Operation::kVariable)
-      variables = std::max<std::size_t>(variables, instruction.slot + 1);
-  }
-  const std::vector<double> all_0(variables, 0.0);
-  const double tension =
-      engine::value_of(law->program, engine::LinkQuantities{}, nullptr, 0.0, all_0.data());
-  return std::isfinite(tension) && tension != 0.0;
-}
-
 /// Warns of the first of these links whose ends coincide and that has a rest length: in 2-D and 3-D
 /// it has no direction.
 void warn_of_coincident_ends(Assembly& assembly, const LinkLists& added,
                              const config::Place& place) {
   if (assembly.scene.space() == 1) return;
-  constexpr const char* kRestLength = "its rest length is not 0";
-  const auto search = [&](const auto& links, const auto& reason_of) {
+  const auto search = [&](const auto& links, const auto& pulls_at_once) {
     for (const auto& link : links) {
       const auto& mats = assembly.scene.network.mats;
       const bool coincide = mats[link.mat_a].position == mats[link.mat_b].position;
-      const char* const reason = coincide ? reason_of(link) : nullptr;
-      if (reason == nullptr) continue;
+      if (!coincide || link.rest_length == 0.0 || !pulls_at_once(link)) continue;
       const std::string quote = "'";
       const std::string a = quote + assembly.names.word_of(link.mat_a, false) + quote;
       const std::string b = quote + assembly.names.word_of(link.mat_b, false) + quote;
@@ -55,23 +31,14 @@ void warn_of_coincident_ends(Assembly& assembly, const LinkLists& added,
           place,
           a + " and " + b +
               " start at the same point, so their link has no direction and exerts "
-              "no force, although " +
-              reason,
+              "no force, although its rest length is not 0",
           "move one of them a little to the side on which it shall be");
       return true;
     }
     return false;
   };
-  const auto of_linear = [](const engine::Link& link) {
-    return link.rest_length != 0.0 && link.stiffness != 0.0 ? kRestLength : nullptr;
-  };
-  if (search(added.links, of_linear)) return;
-  (void)search(added.state_links, [&assembly](const engine::StateLink& link) -> const char* {
-    if (link.rest_length != 0.0) return kRestLength;
-    return pulls_where_ends_meet(assembly.scene.network, link.state_machine)
-               ? "its law has one where they meet"
-               : nullptr;
-  });
+  if (search(added.links, [](const engine::Link& link) { return link.stiffness != 0.0; })) return;
+  (void)search(added.state_links, [](const engine::StateLink&) { return true; });
 }
 
 /// Adds the links between two selections: one to one, or one to many. @return false after a
