@@ -82,20 +82,22 @@ bool FramePublisher::wait_for_signal_reader(const std::string& node, bool is_pac
   return true;
 }
 
+/// Waits for the readers of a topic. @param has_stopped  one did not take what was written before this
+template <class Writer>
+void FramePublisher::wait_for_readers(Writer& writer, bool& has_stopped) {
+  has_stopped = !writer.wait_until_acknowledged(has_stopped ? kPauseBesideStopped : kLongestPause);
+}
+
 void FramePublisher::write_signals() {
   count(signal_writer_.write(signals_));
-  if (!is_paced_ || signals_.batch() % kBatchesAhead != 0) return;
-  const auto at_most = has_stopped_reader_ ? kPauseBesideStopped : kLongestPause;
-  has_stopped_reader_ = !signal_writer_.wait_until_acknowledged(at_most);
+  if (is_paced_ && signals_.batch() % kBatchesAhead == 0)
+    wait_for_readers(signal_writer_, has_stopped_reader_);
 }
 
 /// DDS keeps one frame: the next one may replace it where it has not arrived.
 void FramePublisher::write_frame() {
   const bool is_due = !has_stopped_watcher_ || frame_.frame() % kBatchesAhead == 0;
-  if (keeps_frames_ && is_due) {
-    const auto at_most = has_stopped_watcher_ ? kPauseBesideStopped : kLongestPause;
-    has_stopped_watcher_ = !frame_writer_.wait_until_acknowledged(at_most);
-  }
+  if (keeps_frames_ && is_due) wait_for_readers(frame_writer_, has_stopped_watcher_);
   count(frame_writer_.write(frame_));
 }
 

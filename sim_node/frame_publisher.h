@@ -75,6 +75,8 @@ class FramePublisher {
  private:
   void loop();
   void count(bool written) noexcept;
+  template <class Writer>
+  static void wait_for_readers(Writer& writer, bool& has_stopped);
   void write_signals();
   void write_frame();
   void publish_frame(const FrameShape& shape, const FrameBuffer& buffer);

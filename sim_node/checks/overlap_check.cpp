@@ -12,71 +12,59 @@
 #include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/description/surface.h"
+#include "sim_node/engine/laws/quadrature.h"
+#include "sim_node/plan/stability/start_point.h"
 #include "sim_node/scene/naming.h"
 
 namespace cordis::sim {
 namespace {
 
+using engine::LawPoint;
 using engine::LinkState;
 using engine::NetworkDescription;
 using engine::Quantity;
 
-/// A pair at rest. What is not moved by forces has no mass.
-struct Pose {
-  double distance = 0.0;     // [m]
-  double rest_length = 0.0;  // [m]
-  double mass_a = 0.0;       // [kg]
-  double mass_b = 0.0;       // [kg]
-
-  double elongation() const noexcept { return distance - rest_length; }
-};
-
 /// What a state pulls at rest [N].
-double tension_of(const LinkState& state, const Pose& pose) {
-  const double law = engine::elastic_tension(state.elasticity, {.distance = pose.distance,
-                                                                .elongation = pose.elongation(),
-                                                                .mass_a = pose.mass_a,
-                                                                .mass_b = pose.mass_b});
-  double tension = state.stiffness * pose.elongation() + (std::isfinite(law) ? law : 0.0);
+double tension_of(const LinkState& state, const LawPoint& point) {
+  const double law = engine::elastic_tension(state.elasticity, point);
+  double tension = state.stiffness * point.elongation + (std::isfinite(law) ? law : 0.0);
   if (!state.pulls) tension = std::min(tension, 0.0);
   if (!state.pushes) tension = std::max(tension, 0.0);
   return std::clamp(tension, -state.force_limit, state.force_limit);
 }
 
-/// What a state stores from a pose up to the rest length [J], by Simpson's rule.
-double energy_of(const LinkState& state, Pose pose) {
-  constexpr int kParts = 16;  // even
-  const double width = -pose.elongation() / kParts;
-  double sum = 0.0;
-  for (int i = 0; i <= kParts; ++i) {
-    const double weight = i == 0 || i == kParts ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
-    sum -= weight * tension_of(state, pose);
-    pose.distance += width;
-  }
-  return std::max(sum * width / 3.0, 0.0);
+/// What a state stores from a point up to the rest length [J], with what it is clamped to.
+double energy_of(const LinkState& state, const LawPoint& point) {
+  const engine::Quadrature push([&](double elongation) {
+    LawPoint here = point;
+    here.distance += elongation - point.elongation;
+    here.elongation = elongation;
+    return -tension_of(state, here);
+  });
+  return std::max(push.integral(point.elongation, 0.0), 0.0);
 }
 
-engine::LinkQuantities quantities_of(const LinkState& state, const Pose& pose) {
+engine::LinkQuantities quantities_of(const LinkState& state, const LawPoint& point) {
   engine::LinkQuantities quantities{};
   const auto put = [&quantities](Quantity quantity, double value) {
     quantities[static_cast<std::size_t>(quantity)] = value;
   };
-  put(Quantity::kDistance, pose.distance);
-  put(Quantity::kElongation, pose.elongation());
-  put(Quantity::kRestLength, pose.rest_length);
-  put(Quantity::kForce, tension_of(state, pose));
-  put(Quantity::kMassA, pose.mass_a);
-  put(Quantity::kMassB, pose.mass_b);
+  put(Quantity::kDistance, point.distance);
+  put(Quantity::kElongation, point.elongation);
+  put(Quantity::kRestLength, point.distance - point.elongation);
+  put(Quantity::kForce, tension_of(state, point));
+  put(Quantity::kMassA, point.mass_a);
+  put(Quantity::kMassB, point.mass_b);
   return quantities;
 }
 
 /// The state that the exits lead a pair to from the start; null where they give it another rest length or
 /// lead it round. Exits that ask for variables do not hold.
-const LinkState* state_at(const engine::StateMachine& machine, const Pose& pose) {
+const LinkState* state_at(const engine::StateMachine& machine, const LawPoint& point) {
   std::uint32_t present = machine.start;
   for (std::size_t n = 0; n <= machine.states.size(); ++n) {
     const LinkState& state = machine.states[present];
-    const engine::LinkQuantities quantities = quantities_of(state, pose);
+    const engine::LinkQuantities quantities = quantities_of(state, point);
     const auto begin = machine.exits.begin();
     const auto end = begin + state.last_exit;
     const auto exit = std::find_if(begin + state.first_exit, end, [&](const auto& each) {
@@ -90,20 +78,16 @@ const LinkState* state_at(const engine::StateMachine& machine, const Pose& pose)
 }
 
 /// The speed at which the lighter one leaves a pair [m/s]; 0 where nothing is pushed.
-double speed_of(const engine::StateMachine& machine, const Pose& pose) {
-  if (pose.elongation() >= 0.0 || (pose.mass_a == 0.0 && pose.mass_b == 0.0)) return 0.0;
-  const LinkState* const state = state_at(machine, pose);
+double speed_of(const engine::StateMachine& machine, const LawPoint& point) {
+  if (point.elongation >= 0.0 || (point.mass_a == 0.0 && point.mass_b == 0.0)) return 0.0;
+  const LinkState* const state = state_at(machine, point);
   if (state == nullptr || std::holds_alternative<engine::LennardJones>(state->elasticity))
     return 0.0;
-  const double energy = energy_of(*state, pose);
-  const double lighter = std::min(pose.mass_a, pose.mass_b);
-  const double heavier = std::max(pose.mass_a, pose.mass_b);
+  const double energy = energy_of(*state, point);
+  const double lighter = std::min(point.mass_a, point.mass_b);
+  const double heavier = std::max(point.mass_a, point.mass_b);
   if (lighter == 0.0) return std::sqrt(2.0 * energy / heavier);
   return std::sqrt(2.0 * energy * heavier / (lighter * (lighter + heavier)));
-}
-
-double mass_of(const engine::Mat& mat) {
-  return mat.kind == engine::MatKind::kMass ? mat.mass : 0.0;
 }
 
 /// True if a surface has a hollow when it is written with both sides.
@@ -117,7 +101,7 @@ bool could_be_hollow(const engine::Surface& surface) {
 struct Thrown {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  Pose pose{};
+  double depth = 0.0;     // below the rest length [m]
   double speed = 0.0;     // [m/s]
   std::size_t count = 0;  // of pairs faster than kThrownSpeed
 };
@@ -138,8 +122,7 @@ void warn_of(const scene::Scene& scene, const Thrown& worst, std::uint32_t set,
                    called.name + " throws " +
                        (surface == nullptr ? a + " and " + b + " apart" : b + " out of " + a) +
                        " at " + short_text(worst.speed) + " m/s: they start " +
-                       short_text(-worst.pose.elongation()) + " m nearer than their rest length" +
-                       count,
+                       short_text(worst.depth) + " m nearer than their rest length" + count,
                    hint + ", or let the scene 'settle'");
 }
 
@@ -153,14 +136,14 @@ void check_overlap(const scene::Scene& scene, const plan::StartPairs& near, std:
   const engine::StateMachine& machine = network.state_machines[liaison.state_machine];
   Thrown worst;
   for (const plan::StartPair& pair : near.pairs()) {
-    const std::uint32_t a = plan::mat_of(liaison, pair.member_a);
-    const std::uint32_t b = plan::mat_of(liaison, pair.member_b);
-    const Pose pose{pair.distance, plan::rest_length_of(network, liaison, a, b),
-                    mass_of(network.mats[a]), mass_of(network.mats[b])};
-    const double speed = speed_of(machine, pose);
+    const LawPoint point = plan::start_point(network, liaison, pair);
+    const double speed = speed_of(machine, point);
     if (!(speed > kThrownSpeed)) continue;
     const std::size_t count = worst.count + 1;
-    if (speed > worst.speed) worst = {a, b, pose, speed, 0};
+    if (speed > worst.speed) {
+      worst = {plan::mat_of(liaison, pair.member_a), plan::mat_of(liaison, pair.member_b),
+               -point.elongation, speed, 0};
+    }
     worst.count = count;
   }
   if (worst.count > 0) warn_of(scene, worst, set, problems);

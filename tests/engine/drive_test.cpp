@@ -49,18 +49,6 @@ TimeFunction table(std::vector<double> time, const std::vector<double>& x, bool 
   return function;
 }
 
-/// A MAT of the scene follows a function from its place.
-void drive(NetworkDescription& scene, std::uint32_t mat, TimeFunction function) {
-  Drive drive;
-  drive.mat = mat;
-  drive.function = static_cast<std::uint32_t>(scene.time_functions.size());
-  drive.origin = scene.mats[mat].position;
-  scene.time_functions.push_back(std::move(function));
-  scene.drives.push_back(drive);
-  scene.mats[mat].kind = MatKind::kPort;
-  scene.mats[mat].position = start_of(scene, drive);
-}
-
 void push(NetworkDescription& scene, std::uint32_t mat, TimeFunction function) {
   Drive drive;
   drive.mat = mat;
@@ -94,7 +82,7 @@ double error_of_base_excitation(IntegratorKind integrator, double frequency, int
   scene.step = 1.0 / (frequency * steps_of_period);
   scene.integrator = integrator;
   const double w = 2.0 * kPi * frequency;
-  drive(scene, 0, along_x(Term(1e-3) * sine(Term(w) * now())));
+  drive_mat(scene, 0, along_x(Term(1e-3) * sine(Term(w) * now())));
   World world = make_world(scene);
 
   const auto settled = static_cast<int>(std::ceil(10.0 * frequency));  // e^-30 is left
@@ -121,7 +109,7 @@ TEST(Drive, DragsAMassThroughADamperWithoutAnIntegrationError) {
     for (const double viscosity : {0.02, 0.1, 0.5}) {  // Z'
       NetworkDescription scene = oscillator(1e-3, 0.0, viscosity, 0.0, 0.0, 1e-3);
       scene.integrator = integrator;
-      drive(scene, 0, along_x(Term(0.01) * sine(Term(6.0 * kPi) * now())));
+      drive_mat(scene, 0, along_x(Term(0.01) * sine(Term(6.0 * kPi) * now())));
       World world = make_world(scene);
       run(world, 970);
       const engine::Energy energy = world.energy();
@@ -186,7 +174,7 @@ TEST(Drive, OfAPistonBringsWhatTheSpringStores) {
     NetworkDescription scene = oscillator(0.1, 500.0, 0.0, 0.0, 0.0, 1e-3);
     scene.mats = {fixed(Vec3::Zero()), fixed(Vec3(0.3, 0, 0)), mass(1.0, Vec3(5, 0, 0))};
     scene.links = {{0, 1, 500.0, 0.0, 0.3}};
-    drive(scene, 1, table({0.1, 0.4}, {0.0, -0.1}, smooth));
+    drive_mat(scene, 1, table({0.1, 0.4}, {0.0, -0.1}, smooth));
     World world = make_world(scene);
 
     run(world, 600);
@@ -202,7 +190,7 @@ TEST(Drive, IsTheBeltOfAStickingAndSlippingBlock) {
   const nlohmann::json& params = data["params"];
   const double step = 1e-5;
   NetworkDescription scene = block_on_a_belt(params, step);
-  drive(scene, 2, along_x(Term(number(params["V"])) * now()));
+  drive_mat(scene, 2, along_x(Term(number(params["V"])) * now()));
   World world = make_world(scene);
 
   std::vector<double> slips;
@@ -227,7 +215,7 @@ TEST(Drive, IsTheBeltOfAStickingAndSlippingBlock) {
 
 TEST(Drive, StandsAtItsFunctionAfterEveryStep) {
   NetworkDescription scene = oscillator(0.1, 50.0, 0.2, 0.02, 0.0, 1e-3);
-  drive(scene, 0, along_x(Term(0.01) * sine(Term(30.0) * now())));
+  drive_mat(scene, 0, along_x(Term(0.01) * sine(Term(30.0) * now())));
   const TimeFunction function = scene.time_functions[0];
   World world = make_world(scene);
 
@@ -247,7 +235,7 @@ TEST(Drive, BeginsWithTheVelocityOfItsFirstPeriod) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1e-3);
   scene.mats.push_back(fixed(Vec3::Zero()));
   scene.links = {{0, 2, 0.0, 7.0, 0.0}};
-  drive(scene, 0, along_x(Term(0.3) * now()));
+  drive_mat(scene, 0, along_x(Term(0.3) * now()));
   World world = make_world(scene);
 
   world.step();
@@ -258,7 +246,7 @@ TEST(Drive, BeginsWithTheVelocityOfItsFirstPeriod) {
 TEST(Drive, CountsJumpsAndNothingElse) {
   const auto jumps_of = [](TimeFunction function) {
     NetworkDescription scene = oscillator(0.1, 50.0, 0.2, 0.02, 0.0, 1e-3);
-    drive(scene, 0, std::move(function));
+    drive_mat(scene, 0, std::move(function));
     World world = make_world(scene);
     std::uint32_t count = 0;
     for (int n = 0; n < 1000; ++n) count += world.step().drive_jumps;
@@ -281,7 +269,7 @@ TEST(Drive, CountsJumpsAndNothingElse) {
 
 TEST(Drive, OfAJumpAtTheStartActsOnce) {
   NetworkDescription scene = oscillator(0.1, 0.0, 3.0, 0.0, 0.0, 1e-3);
-  drive(scene, 0, along_x(three(Operation::kSelect, now() < Term(1e-9), Term(0.0), Term(0.1))));
+  drive_mat(scene, 0, along_x(three(Operation::kSelect, now() < Term(1e-9), Term(0.0), Term(0.1))));
   World world = make_world(scene);
   run(world, 3);
   EXPECT_NEAR(world.velocity(1).x(), 3.0 * 0.1 / 0.1, 0.1);
@@ -289,7 +277,8 @@ TEST(Drive, OfAJumpAtTheStartActsOnce) {
 
 TEST(Drive, StaysWhereItIsAndReportsWhatIsNotFinite) {
   NetworkDescription scene = oscillator(0.1, 50.0, 0.2, 0.02, 0.0, 1e-3);
-  drive(scene, 0, along_x(one(Operation::kSqrt, Term(0.0401) - now()) - Term(std::sqrt(0.0401))));
+  drive_mat(scene, 0,
+            along_x(one(Operation::kSqrt, Term(0.0401) - now()) - Term(std::sqrt(0.0401))));
   push(scene, 1, along_x(Term(1.0) / (Term(0.0505) - now())));
   World world = make_world(scene);
 
@@ -308,7 +297,7 @@ TEST(Drive, StaysWhereItIsAndReportsWhatIsNotFinite) {
 
 TEST(Drive, RefusesAStartThatContradictsIt) {
   NetworkDescription scene = oscillator(0.1, 50.0, 0.2, 0.02, 0.0, 1e-3);
-  drive(scene, 0, along_x(Term(0.01) * now()));
+  drive_mat(scene, 0, along_x(Term(0.01) * now()));
   scene.mats[0].position.x() = 1e-12;
   EXPECT_THROW(make_world(scene), std::invalid_argument);
   scene.mats[0].position.x() = 0.0;
@@ -430,9 +419,9 @@ TEST(Drive, KeepsTheAccountAndTheBitsOfEveryRandomScene) {
     } else {
       scene.links.push_back({0, 3, 20.0, 0.2 * viscosity, 0.0, true});
     }
-    drive(scene, 0, random.function(dimension));
+    drive_mat(scene, 0, random.function(dimension));
     if (random.below(2) == 0) push(scene, 2, random.function(dimension));
-    drive(scene, 5, random.function(dimension));
+    drive_mat(scene, 5, random.function(dimension));
 
     World world = make_world(scene);
     // what `leapfrog` leaves is of second order, `implicit` takes energy

@@ -19,7 +19,6 @@
 namespace cordis::test {
 namespace {
 
-using engine::Drive;
 using engine::Energy;
 using engine::IntegratorKind;
 using engine::TimeFunction;
@@ -39,13 +38,7 @@ Term risen() {
 void follow(NetworkDescription& scene, std::uint32_t mat, const std::vector<Term>& way) {
   TimeFunction function;
   for (std::size_t axis = 0; axis < way.size(); ++axis) function.formula[axis] = way[axis].program;
-  Drive drive;
-  drive.mat = mat;
-  drive.function = static_cast<std::uint32_t>(scene.time_functions.size());
-  drive.origin = scene.mats[mat].position;
-  scene.time_functions.push_back(std::move(function));
-  scene.drives.push_back(drive);
-  scene.mats[mat].kind = MatKind::kPort;
+  drive_mat(scene, mat, std::move(function));
 }
 
 /// A mass of 1 kg on a spring to a wall, pulled by a damper whose other end is driven; Z' at 1 ms.
@@ -264,12 +257,7 @@ TEST(OverdampedDrive, AccountsForTheWorkOfTheDrivenEnd) {
 
 /// A chain of masses on dampers alone, with a driven end: nothing but the work of dampers can be wrong.
 TEST(OverdampedDrive, ClosesTheAccountOfDampersToRounding) {
-  NetworkDescription scene = free_cluster(30, 90, 500.0);
-  for (Link& link : scene.links) link.stiffness = 0.0;
-  scene.integrator = IntegratorKind::kLeapfrog;
-  scene.medium_viscosity = 1.0;
-  scene.mats.push_back(fixed(Vec3(0.5, 0.5, 0.5)));
-  scene.links.push_back({3, 30, 0.0, 200.0, 0.0});
+  NetworkDescription scene = cluster_on_dampers(fixed(Vec3(0.5, 0.5, 0.5)));
   follow(scene, 30,
          {Term(0.1) * one(Operation::kSin, drag_angle()), Term(0.1) * risen(), Term(0.0)});
   ASSERT_TRUE(engine::damps_implicitly(scene));

@@ -362,14 +362,7 @@ TEST(Overdamped, RandomNetworksOfTwoDimensionsAreOfSecondOrder) {
 }
 
 TEST(Overdamped, AccountsForWhatDampersTakeToRounding) {
-  // without springs nothing else is left to be wrong
-  NetworkDescription scene = free_cluster(30, 90, 500.0);
-  for (Link& link : scene.links) link.stiffness = 0.0;
-  scene.integrator = IntegratorKind::kLeapfrog;
-  scene.medium_viscosity = 1.0;
-  scene.mats.push_back(port(Vec3(0.5, 0.5, 0.5)));
-  scene.links.push_back({3, 30, 0.0, 200.0, 0.0});
-  World world = make_world(scene);
+  World world = make_world(cluster_on_dampers(port(Vec3(0.5, 0.5, 0.5))));
   for (int n = 0; n < 500; ++n) {
     world.impose_position(30, Vec3(0.5, 0.5 + 0.1 * std::sin(0.02 * n), 0.5));
     world.step();

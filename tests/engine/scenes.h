@@ -115,4 +115,27 @@ inline NetworkDescription free_cluster(std::uint32_t count, std::uint32_t link_c
   return scene;
 }
 
+/// A MAT of the scene follows a function from its place.
+inline void drive_mat(NetworkDescription& scene, std::uint32_t mat, engine::TimeFunction function) {
+  engine::Drive drive;
+  drive.mat = mat;
+  drive.function = static_cast<std::uint32_t>(scene.time_functions.size());
+  drive.origin = scene.mats[mat].position;
+  scene.time_functions.push_back(std::move(function));
+  scene.drives.push_back(drive);
+  scene.mats[mat].kind = MatKind::kPort;
+  scene.mats[mat].position = start_of(scene, drive);
+}
+
+/// 30 masses in a medium on heavy dampers alone, and one damper to `end`, MAT 30: no work of springs can be wrong.
+inline NetworkDescription cluster_on_dampers(const Mat& end) {
+  NetworkDescription scene = free_cluster(30, 90, 500.0);
+  for (Link& link : scene.links) link.stiffness = 0.0;
+  scene.integrator = engine::IntegratorKind::kLeapfrog;
+  scene.medium_viscosity = 1.0;
+  scene.mats.push_back(end);
+  scene.links.push_back({3, 30, 0.0, 200.0, 0.0});
+  return scene;
+}
+
 }  // namespace cordis::test
