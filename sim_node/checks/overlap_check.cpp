@@ -101,7 +101,7 @@ bool could_be_hollow(const engine::Surface& surface) {
 struct Thrown {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;
-  double depth = 0.0;     // below the rest length [m]
+  double nearer = 0.0;    // than the rest length [m]
   double speed = 0.0;     // [m/s]
   std::size_t count = 0;  // of pairs faster than kThrownSpeed
 };
@@ -122,7 +122,7 @@ void warn_of(const scene::Scene& scene, const Thrown& worst, std::uint32_t set,
                    called.name + " throws " +
                        (surface == nullptr ? a + " and " + b + " apart" : b + " out of " + a) +
                        " at " + short_text(worst.speed) + " m/s: they start " +
-                       short_text(worst.depth) + " m nearer than their rest length" + count,
+                       short_text(worst.nearer) + " m nearer than their rest length" + count,
                    hint + ", or let the scene 'settle'");
 }
 
