@@ -3,15 +3,19 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "node/assert.h"
 #include "sim_node/checks/overlap_check.h"
 #include "sim_node/checks/short_text.h"
 #include "sim_node/engine/core/liaison_id.h"
+#include "sim_node/engine/variables.h"
 #include "sim_node/plan/rate.h"
 #include "sim_node/plan/stability/start_pairs.h"
+#include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/table_pulse.h"
 #include "sim_node/scene/naming.h"
 
@@ -65,14 +69,8 @@ void warn_of(const scene::Scene& scene, const Overlap& worst, const engine::Lenn
                    "start them at least a diameter apart");
 }
 
-/// A pair has a direction only where its members are apart, in 1-D too.
-void check_coincidence(const scene::Scene& scene, const plan::StartPairs& near,
-                       const engine::SetLiaison& set, engine::LiaisonId liaison,
-                       config::Problems& problems) {
-  if (!near.at_one_point()) return;
-  const std::uint32_t mat_a = plan::mat_of(set, near.at_one_point()->member_a);
-  const std::uint32_t mat_b = plan::mat_of(set, near.at_one_point()->member_b);
-  if (plan::rest_length_of(scene.network, set, mat_a, mat_b) == 0.0) return;
+void warn_of_no_direction(const scene::Scene& scene, std::uint32_t mat_a, std::uint32_t mat_b,
+                          engine::LiaisonId liaison, config::Problems& problems) {
   const scene::Called called = scene::call_liaison(scene, liaison);
   problems.warning(called.place,
                    scene::call_mat(scene, mat_a).name + " and " +
@@ -81,6 +79,46 @@ void check_coincidence(const scene::Scene& scene, const plan::StartPairs& near,
                        " has no direction between them and exerts no force, although its rest "
                        "length is not 0",
                    "move one of them a little to the side on which it shall be");
+}
+
+/// A pair has a direction only where its members are apart, in 1-D too.
+void check_coincidence(const scene::Scene& scene, const plan::StartPairs& near,
+                       const engine::SetLiaison& set, engine::LiaisonId liaison,
+                       config::Problems& problems) {
+  if (!near.at_one_point()) return;
+  const std::uint32_t mat_a = plan::mat_of(set, near.at_one_point()->member_a);
+  const std::uint32_t mat_b = plan::mat_of(set, near.at_one_point()->member_b);
+  if (plan::rest_length_of(scene.network, set, mat_a, mat_b) == 0.0) return;
+  warn_of_no_direction(scene, mat_a, mat_b, liaison, problems);
+}
+
+/// The law of the start, if it asks for variables: so does one whose rest length is a formula.
+const engine::Expression* formula_at_start(const engine::StateMachine& machine) {
+  const auto* law = std::get_if<engine::Expression>(&machine.states[machine.start].elasticity);
+  return law != nullptr && engine::asks_for_variable(law->program) ? law : nullptr;
+}
+
+/// Warns of the first link whose ends coincide, in 2-D and 3-D, and whose formula has a tension there.
+void check_formulas(const scene::Scene& scene, config::Problems& problems) {
+  const NetworkDescription& network = scene.network;
+  std::vector<double> variables;
+  for (std::uint32_t l = 0; l < network.state_links.size(); ++l) {
+    const engine::StateLink& link = network.state_links[l];
+    const auto* law = formula_at_start(network.state_machines[link.state_machine]);
+    if (network.dimension == 1 || law == nullptr || link.rest_length != 0.0) continue;
+    engine::LawPoint point = plan::start_point(network, link);
+    if (point.distance != 0.0) continue;
+    if (variables.empty()) {
+      const engine::World world(std::make_shared<const engine::Network>(network));
+      variables.resize(network.variables.size());
+      engine::read_variables(network.variables, world, variables);
+    }
+    point.variables = variables.data();
+    if (engine::elastic_tension(*law, point) == 0.0) continue;
+    warn_of_no_direction(scene, link.mat_a, link.mat_b, {engine::LiaisonKind::kStateLink, l},
+                         problems);
+    return;
+  }
 }
 
 void check_overlaps(const scene::Scene& scene, config::Problems& problems) {
@@ -162,6 +200,7 @@ void check_pulses(const scene::Scene& scene, config::Problems& problems) {
 void check_start(const scene::Scene& scene, config::Problems& problems) {
   CORDIS_ASSERT(scene.network.step > 0.0);
   check_overlaps(scene, problems);
+  check_formulas(scene, problems);
   check_gravity(scene, problems);
   check_pulses(scene, problems);
 }

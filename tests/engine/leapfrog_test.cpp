@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "tests/engine/many_states.h"
@@ -147,6 +149,72 @@ TEST(LeapfrogImplicitDamping, KeepsTheLengthOfADamperThatTurns) {
       // The centrifugal force of one turn stretches the spring, K' = 2.
       EXPECT_LT(farthest, 0.2 * turn * turn);
     }
+  }
+}
+
+/// Where a mass of 1 kg on dampers to fixed points comes to under a force, without inertia.
+Vec3 crept(const std::vector<Vec3>& ends, double viscosity, const Vec3& force, double time) {
+  const auto velocity = [&](const Vec3& place) {
+    Eigen::Matrix2d z = Eigen::Matrix2d::Zero();
+    for (const Vec3& end : ends) {
+      const Eigen::Vector2d along = (end - place).head<2>().normalized();
+      z += viscosity * along * along.transpose();
+    }
+    Vec3 found = Vec3::Zero();
+    found.head<2>() = z.inverse() * force.head<2>();
+    return found;
+  };
+  constexpr int kSteps = 4000;
+  const double h = time / kSteps;
+  Vec3 place = Vec3::Zero();
+  for (int n = 0; n < kSteps; ++n) {
+    const Vec3 k1 = velocity(place);
+    const Vec3 k2 = velocity(place + 0.5 * h * k1);
+    const Vec3 k3 = velocity(place + 0.5 * h * k2);
+    const Vec3 k4 = velocity(place + h * k3);
+    place += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  return place;
+}
+
+// Each damper takes away the kick of the other one. Z' is 100 at 1 kHz.
+TEST(LeapfrogImplicitDamping, CreepsAsItShouldOnDampersAcrossEachOther) {
+  const std::vector<std::vector<Vec3>> pairs = {{Vec3(0.1, 0, 0), Vec3(0, 0.1, 0)},
+                                                {Vec3(0.1, 0.1, 0), Vec3(-0.1, 0.1, 0)},
+                                                {Vec3(0.1, 0.05, 0), Vec3(-0.1, 0.05, 0)},
+                                                {Vec3(0.1, 0.02, 0), Vec3(0.1, -0.02, 0)}};
+  for (const std::vector<Vec3>& ends : pairs) {
+    for (const Vec3& force : {Vec3(3000, 0, 0), Vec3(0, 3000, 0), Vec3(-2100, 2100, 0)}) {
+      for (const double step : {1e-3, 5e-4, 2.5e-4}) {
+        NetworkDescription scene;
+        scene.dimension = 2;
+        scene.step = step;
+        scene.gravity = force;
+        scene.mats = {mass(1.0, Vec3::Zero()), fixed(ends[0]), fixed(ends[1])};
+        scene.links = {{0, 1, 0.0, 1e5, 0.0}, {0, 2, 0.0, 1e5, 0.0}};
+        World world = make_world(by_leapfrog(scene));
+        run(world, static_cast<int>(std::lround(0.05 / step)));
+        const Vec3 exact = crept(ends, 1e5, force, 0.05);
+        EXPECT_LT((world.position(0) - exact).norm(), 5e-3 * exact.norm())
+            << ends[1].transpose() << " " << force.transpose() << " " << step;
+      }
+    }
+  }
+}
+
+// Its links turn by up to 0.3 rad in a step, which is not certain.
+TEST(LeapfrogImplicitDamping, HoldsTheEnergyOfAFastPairBesideAStiffSpring) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3(0.02, 0.03, 0)), mass(1.2, Vec3(-0.052, 0.079, 0), Vec3(-8.5, -5.7, 0)),
+                mass(7.8, Vec3(-0.045, -0.096, 0), Vec3(11.1, -4.9, 0))};
+  scene.links = {{1, 2, 4.6e5, 6.1e3, 0.176}, {2, 0, 3.8e6, 0.0, 0.05}};
+  World world = make_world(by_leapfrog(scene));
+  const double at_start = world.energy().total();
+  for (int n = 0; n < 5000; ++n) {
+    world.step();
+    ASSERT_LT(world.energy().total(), 1.2 * at_start) << n;
   }
 }
 

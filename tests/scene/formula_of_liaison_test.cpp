@@ -497,6 +497,23 @@ TEST(FormulaOfLiaison, OfARestAngleThatIsNeverFiniteChangesNothing) {
   EXPECT_EQ(world.rest_angle_of_bend(0), 0.0);
 }
 
+TEST(FormulaOfLiaison, OfARestLengthKeepsTheAccountWhileTheEndsMeet) {
+  // There it has no direction and does not pull, though what it stores changes with its rest length.
+  const Scene scene = sound_scene(2, R"(liaisons:
+  rod: {kind: spring, stiffness_n_per_m: 100, rest_m: 0.1 + 0.01 * sin(20 * time_s)}
+matter:
+  m: {kind: points, mass_kg: 1, at_m: [[0, 0], [0, 0]]}
+links:
+  - {liaison: rod, between: ["m[0]", "m[1]"]}
+)");
+  engine::World world = started(scene);
+  for (int i = 0; i < 500; ++i) world.step();
+  EXPECT_EQ(world.position(1), Vec3(0.0, 0.0, 0.0));
+  const double stored = 50.0 * std::pow(0.1 + 0.01 * std::sin(20.0 * 0.499), 2);
+  EXPECT_NEAR(world.energy().switching, stored - 0.5, 1e-12);
+  expect_closed(world, 1e-12);
+}
+
 TEST(FormulaOfLiaison, OfAContactBelowZeroKeepsTheAccount) {
   const auto run = [](double rate) {
     engine::World world = started(at_rate(

@@ -247,5 +247,28 @@ TEST(StartCheck, WarnsOfAPulseOfATableThatIsShorterThanAStep) {
   EXPECT_NE(short_text.find("make it longer and as much lower"), std::string::npos) << short_text;
 }
 
+TEST(StartCheck, WarnsOfEndsThatCoincideUnderAFormulaThatPullsThere) {
+  const auto links_of = [](const std::string& rest, const std::string& places) {
+    return warnings_of(R"yaml(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+liaisons: {d: {kind: spring, stiffness_n_per_m: 100, rest_m: ")yaml" +
+                       rest + R"yaml("}}
+matter: {m: {kind: points, mass_kg: 1, at_m: [)yaml" +
+                       places + R"yaml(]}}
+links: [{liaison: d, between: ["m[0]", "m[1]"], name: rod}]
+)yaml");
+  };
+  const std::string text = links_of("0.1 + 0.01 * sin(time_s)", "[1, 0], [1, 0]");
+  EXPECT_NE(text.find("m[0] and m[1] start at the same point, so rod has no direction"),
+            std::string::npos)
+      << text;
+  // What the formula asks for counts as it is at the start.
+  EXPECT_NE(links_of("m[0].position_x_m", "[1, 0], [1, 0]"), "");
+  EXPECT_EQ(links_of("m[0].position_x_m", "[0, 1], [0, 1]"), "");
+  EXPECT_EQ(links_of("0.01 * sin(time_s)", "[1, 0], [1, 0]"), "");
+  EXPECT_EQ(links_of("0.1 + 0.01 * sin(time_s)", "[1, 0], [1.1, 0]"), "");
+}
+
 }  // namespace
 }  // namespace cordis::sim

@@ -11,7 +11,10 @@ namespace {
 
 constexpr double kG = kImplicitDampingShare;
 constexpr double kMaxSine = 0.5;    // of the turn of a damper in a step
-constexpr double kSlowTurn = 0.01;  // up to which the first k is good enough
+constexpr double kSlowTurn = 0.01;  // up to which one k is good enough
+// Errors of a guessed k: over how much longer the damper becomes, and over the larger of both k
+constexpr double kSmallError = 0.001;
+constexpr double kLargeError = 0.5;
 
 /// A network whose M + dt Z + dt^2 K is M + g dt Z of this one.
 NetworkDescription dampers_alone(const NetworkDescription& network) {
@@ -64,26 +67,32 @@ void ImplicitDamping::find_axes(const MatArray& mats) noexcept {
   }
 }
 
-/// Finds dt Z k. @return the sine of the largest turn
+/// Finds dt Z k from what the ends of dampers do at the moment 1/2. @return how good the last k were
 /// Ends that keep their distance d go by d sin t across, and by d (1 - cos t) = k / 2 along, as they turn by t. Beyond
 /// 30 degrees in a step k stays as it is: what turns so fast is not certain.
-double ImplicitDamping::find_turning(const AlignedVector<double>& displacement,
-                                     AlignedVector<double>& turning) const noexcept {
-  if (is_1d_) return 0.0;
-  double largest = 0.0;
+ImplicitDamping::Guess ImplicitDamping::find_turning(const AlignedVector<double>& displacement,
+                                                     AlignedVector<double>& turning) noexcept {
+  Guess guess = Guess::kRight;
+  if (is_1d_) return guess;
   std::fill(turning.begin(), turning.end(), 0.0);
-  for (const Damper& damper : dampers_) {
+  for (Damper& damper : dampers_) {
     if (damper.isotropic || damper.length == 0.0) continue;
     const Vec3 apart = column(displacement, damper.b) - column(displacement, damper.a);
-    const Vec3 across = apart - dot(damper.axis, apart) * damper.axis;
+    const double along = dot(damper.axis, apart);
+    const Vec3 across = apart - along * damper.axis;
     const double sine = std::min(std::sqrt(dot(across, across)) / damper.length, kMaxSine);
-    largest = std::max(largest, sine);
     const double k = 2.0 * damper.length * (1.0 - std::sqrt(1.0 - sine * sine));
+    const double error = std::abs(k - damper.turning);
+    if (error > kSmallError * std::abs(along) && error > kLargeError * std::max(k, damper.turning))
+      guess = Guess::kWrong;
+    else if (sine > kSlowTurn)
+      guess = std::max(guess, Guess::kRough);
+    damper.turning = k;
     const Vec3 force = (damper.viscosity * k) * damper.axis;
     column(turning, damper.a) -= force;
     column(turning, damper.b) += force;
   }
-  return largest;
+  return guess;
 }
 
 /// Adds the forces with which dampers resist these displacements [kg m].
@@ -128,6 +137,30 @@ void ImplicitDamping::add_constant_force(std::uint32_t mat, const Vec3& force) n
   column(constant_, mat) += force;
 }
 
+template <class KickAt>
+void ImplicitDamping::solve_first(const KickAt& kick_at) noexcept {
+  const double at_first = kG * (begin_of_period() + kG);
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    if (mass_[i] == 0.0) continue;
+    column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
+                        column(drag_at_first_, i) - at_first * column(turning_, i);
+  }
+  matrix_.solve(first_.data());
+}
+
+template <class KickAt>
+void ImplicitDamping::solve_second(const KickAt& kick_at) noexcept {
+  const double at_end = kG * (begin_of_period() + 1.0);
+  for (std::size_t i = 0; i < mass_.size(); ++i) {
+    if (mass_[i] == 0.0) continue;
+    const Vec3 begin = column(displacement_, i);
+    column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
+                                     kG * kick_at(i, 0.5)) -
+                         column(drag_at_end_, i) - at_end * column(turning_at_end_, i);
+  }
+  matrix_.solve(second_.data());
+}
+
 void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* external) noexcept {
   const std::size_t count = mass_.size();
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -148,33 +181,21 @@ void ImplicitDamping::find_velocities(const MatArray& mats, const PortInputs* ex
   }
   for (const Port& port : ports_)
     column(middle_, port.mat) = port.displacement(begin_of_period() + 1.0);
-  const double sine = find_turning(middle_, turning_);
-  const double at_first = kG * (begin_of_period() + kG);
+  find_turning(middle_, turning_);
+  turning_at_end_ = turning_;  // the same size: no allocation
+  solve_first(kick_at);
+  solve_second(kick_at);
   for (std::size_t i = 0; i < count; ++i) {
-    if (mass_[i] == 0.0) continue;
-    column(first_, i) = mass_[i] * (column(displacement_, i) + kG * kick_at(i, kG - 0.5)) -
-                        column(drag_at_first_, i) - at_first * column(turning_, i);
+    if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
   }
-  matrix_.solve(first_.data());
-  const double at_end = kG * (begin_of_period() + 1.0);
-  const auto find_second = [&](const AlignedVector<double>& turning) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (mass_[i] == 0.0) continue;
-      const Vec3 begin = column(displacement_, i);
-      column(second_, i) = mass_[i] * (begin + ((1.0 - kG) / kG) * (column(first_, i) - begin) +
-                                       kG * kick_at(i, 0.5)) -
-                           column(drag_at_end_, i) - at_end * column(turning, i);
+  const Guess guess = find_turning(middle_, response_);
+  if (guess != Guess::kRight) {
+    std::swap(turning_at_end_, response_);
+    if (guess == Guess::kWrong) {
+      turning_ = turning_at_end_;
+      solve_first(kick_at);
     }
-    matrix_.solve(second_.data());
-  };
-  find_second(turning_);
-  turns_fast_ = sine > kSlowTurn;
-  if (turns_fast_) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (mass_[i] > 0.0) column(middle_, i) = column(second_, i);
-    }
-    find_turning(middle_, turning_at_end_);
-    find_second(turning_at_end_);
+    solve_second(kick_at);
   }
   for (std::size_t i = 0; i < count; ++i) {
     column(middle_, i) = mass_[i] > 0.0
@@ -251,15 +272,10 @@ ImplicitDamping::Work ImplicitDamping::advance(MatArray& mats, AlignedVector<dou
     }
   }
   // One k for u1 and u2 has no share in w, but in the mean velocity of the first period.
-  if (turns_fast_ || first) {
-    const AlignedVector<double>& turning_at_end = turns_fast_ ? turning_at_end_ : turning_;
-    const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period() + kG);
-    const double of_end = (first ? kG : 1.0) * kG * (begin_of_period() + 1.0);
-    for (std::size_t i = 0; i < drag_.size(); ++i)
-      drag_[i] = of_first * turning_[i] + of_end * turning_at_end[i];
-  } else {
-    std::fill(drag_.begin(), drag_.end(), 0.0);
-  }
+  const double of_first = (first ? 2.0 * kG : 1.0) * (1.0 - kG) * (begin_of_period() + kG);
+  const double of_end = (first ? kG : 1.0) * kG * (begin_of_period() + 1.0);
+  for (std::size_t i = 0; i < drag_.size(); ++i)
+    drag_[i] = of_first * turning_[i] + of_end * turning_at_end_[i];
   add_drag_of_links(middle_, drag_);
   const double rate = 1.0 / dt_;
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = -(rate * rate / part) * drag_[i];

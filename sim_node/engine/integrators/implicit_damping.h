@@ -30,8 +30,10 @@ namespace cordis::engine {
 ///
 /// A damper pulls along its axis a at x(n), and turns meanwhile. At the moment n + c its ends part by a u + c k:
 /// c is g - 1/2 for u1 and 1/2 for u2. Ends that keep their length part by -k / 2 along, from what u2 goes
-/// across. k is found from v and the kicks. Where a damper turns by more than 0.01 rad, u2 is solved again with
-/// the k of the first u2. So a heavy damper that turns keeps its length.
+/// across. At first k is found from v and the kicks. Where a damper turns by more than 0.01 rad, u2 is solved again
+/// with the k of the first u2. Kicks that other dampers take away make the first k much too large. Where it is more
+/// than twice that of u2, and off by more than 0.001 of how much longer the damper becomes, u1 is solved again as well.
+/// So a heavy damper that turns keeps its length, and what hangs on several creeps as it should.
 ///
 /// The first period goes from x(0) to x(1): it begins with v(0), and v(1/2) is its mean velocity v_m. Dampers
 /// take from x(0) to the moment 1/2, with the damping force I / dt and A = (M + g dt Z)^-1 M,
@@ -64,7 +66,7 @@ class ImplicitDamping {
 
   /// Finds dt w under the forces of the MATs.
   /// @param external  forces from outside to be added to them; null: they have been
-  /// Real time: two solves, three where a damper turns by more than 0.01 rad; no allocation.
+  /// Real time: two solves, three or four where dampers turn fast; no allocation.
   void find_velocities(const MatArray& mats, const PortInputs* external) noexcept;
   /// dt^2 (f(n) / m + g) of the masses, without what is constant over the period.
   const AlignedVector<double>& kick() const noexcept { return kick_; }
@@ -104,7 +106,15 @@ class ImplicitDamping {
     double viscosity;  // dt Z [kg]
     bool isotropic;
     Vec3 axis = Vec3::UnitX();
-    double length = 0.0;  // [m]
+    double length = 0.0;   // [m]
+    double turning = 0.0;  // k [m]
+  };
+
+  /// How near the guessed k of the dampers were to those of u2.
+  enum class Guess : std::uint8_t {
+    kRight,
+    kRough,  ///< or a damper turns fast: u2 needs another
+    kWrong   ///< u1 needs another, too
   };
 
   /// How a port moves in this period.
@@ -121,8 +131,14 @@ class ImplicitDamping {
   void find_drag_of_ports(double ahead, AlignedVector<double>& drag) noexcept;
   /// From the moment of x(n), in periods.
   double begin_of_period() const noexcept { return first_period_ ? 0.0 : -0.5; }
-  double find_turning(const AlignedVector<double>& displacement,
-                      AlignedVector<double>& turning) const noexcept;
+  Guess find_turning(const AlignedVector<double>& displacement,
+                     AlignedVector<double>& turning) noexcept;
+  /// Finds u1, or u2, with the present k.
+  /// @param kick_at  dt^2 (f / m + g) of a mass at a moment, in periods from that of x(n) on
+  template <class KickAt>
+  void solve_first(const KickAt& kick_at) noexcept;
+  template <class KickAt>
+  void solve_second(const KickAt& kick_at) noexcept;
   void find_carried_forces(const MatArray& mats, const AlignedVector<double>& losses) noexcept;
   void add_drag_of_links(const AlignedVector<double>& displacement,
                          AlignedVector<double>& drag) const noexcept;
@@ -143,7 +159,6 @@ class ImplicitDamping {
   AlignedVector<double> kick_;
   const double* last_kick_ = nullptr;
   bool first_period_ = false;
-  bool turns_fast_ = false;         // a damper does: turning_at_end_ counts
   AlignedVector<double> first_;     // dt u1
   AlignedVector<double> second_;    // dt u2; after advance() dt v(n+1)
   AlignedVector<double> middle_;    // dt w

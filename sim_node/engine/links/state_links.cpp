@@ -63,8 +63,12 @@ double StateLinkArray::parameter_energy(const StateTable& table,
     const Vec3 along = between(columns.position);
     const Vec3 moved = along - between(columns.delayed);
     const double distance = is_1d_ ? along.x() : along.norm();
-    if (!is_1d_ && distance == 0.0) continue;  // no direction, hence no force
-    const double increment = is_1d_ ? moved.x() : along.dot(moved) / distance;
+    double increment = 0.0;  // where a link has no direction it has no force, hence no work
+    if (is_1d_) {
+      increment = moved.x();
+    } else if (distance != 0.0) {
+      increment = along.dot(moved) / distance;
+    }
     sum += table.parameter_energy(state_[l], distance, rest_length_[l], {mass_a_[l], mass_b_[l]},
                                   increment);
   }
