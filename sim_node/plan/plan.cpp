@@ -347,21 +347,26 @@ double certain_step_of(const engine::NetworkDescription& network, const LiaisonG
 
 namespace {
 
-/// The least Z / m of a vibration: of linear springs, each with its damper, Z >= w^2 min(Z / K), and what the medium
-/// adds. Of all else 0, for its slopes are known from above alone.
-double min_viscosity_of(const LiaisonGraph& graph, double w) {
+/// The least Z / m of a vibration is w^2 `of_links` + `of_medium`: of linear springs, each with its damper, Z >= w^2
+/// min(Z / K), and what the medium adds. Of all else 0, for its slopes are known from above alone.
+struct MinViscosity {
+  double of_links = 0.0;   // [s]
+  double of_medium = 0.0;  // [1/s]
+};
+
+MinViscosity min_viscosity_of(const LiaisonGraph& graph) {
   double ratio = std::numeric_limits<double>::infinity();
   for (const Edge& edge : graph.edges) {
-    if (edge.liaison.kind != LiaisonKind::kLink || edge.follows) return 0.0;
+    if (edge.liaison.kind != LiaisonKind::kLink || edge.follows) return {};
     if (edge.stiffness > 0.0) ratio = std::min(ratio, edge.viscosity / edge.stiffness);
   }
-  if (!graph.contacts.empty() || !graph.forces.empty()) return 0.0;
+  if (!graph.contacts.empty() || !graph.forces.empty()) return {};
   double of_medium = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < graph.inverse_mass.size(); ++i) {
     if (graph.inverse_mass[i] > 0.0)
       of_medium = std::min(of_medium, graph.medium_viscosity[i] * graph.inverse_mass[i]);
   }
-  return w * w * ratio + of_medium;
+  return {ratio, of_medium};
 }
 
 /// A vibration y of unit mass has w^2 = y'K y and Z = y'Z y, hence Z <= w^2 max(Z / K) over the links, and what the
@@ -467,15 +472,43 @@ MovedAsByCordis moved_as_by_cordis(const engine::NetworkDescription& network,
   return part;
 }
 
+/// Z / m over w, from 0.8 to 1.25 times the critical. Between them the frequency and the rate of the slower mode are
+/// known to a root of their errors alone, and neither has time to show.
+constexpr double kMaxSwinging = 1.6;
+constexpr double kMinCreeping = 2.5;
+
 }  // namespace
 
 OscillatorError error_of(const BandEdge& edge, double viscosity, double step,
                          engine::IntegratorKind integrator) {
   const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
-  OscillatorError error = oscillator_error(w, viscosity, step, integrator, edge.as_by_cordis);
+  const bool swings = viscosity < 2.0 * w;
+  const double counted =
+      swings ? std::min(viscosity, kMaxSwinging * w) : std::max(viscosity, kMinCreeping * w);
+  OscillatorError error = oscillator_error(w, counted, step, integrator, edge.as_by_cordis);
   // A Maxwell element of w T = 1 damps by w^2 dt^2 / 12 too much; a damper and a spring do not.
   if (error.oscillates) error.decay += edge.of_maxwell * w * w * step * step / 12.0;
   return error;
+}
+
+std::vector<BandEdge> lighter_creeps(const BandEdge& edge) {
+  const double w = 2.0 * std::numbers::pi * edge.frequency_hz;
+  std::vector<BandEdge> creeps;
+  const auto add = [&](double frequency, double viscosity) {
+    BandEdge lighter = edge;
+    lighter.frequency_hz = frequency / (2.0 * std::numbers::pi);
+    lighter.viscosity = viscosity;
+    creeps.push_back(lighter);
+  };
+  if (edge.viscosity <= kMinCreeping * w) return creeps;
+  add(w, std::max(edge.min_viscosity, kMinCreeping * w));
+  // At the frequency w' the least viscosity is of_links w'^2 + min_of_medium: kMinCreeping w' at the larger root.
+  const double of_links = (edge.min_viscosity - edge.min_of_medium) / (w * w);
+  const double square = kMinCreeping * kMinCreeping - 4.0 * of_links * edge.min_of_medium;
+  if (edge.min_viscosity <= kMinCreeping * w || !(square > 0.0) || of_links == 0.0) return creeps;
+  const double lower = 0.5 * (kMinCreeping + std::sqrt(square)) / of_links;
+  if (lower < w) add(lower, kMinCreeping * lower);
+  return creeps;
 }
 
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
@@ -485,7 +518,9 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
   BandEdge edge;
   edge.frequency_hz = frequency_hz;
   edge.viscosity = max_viscosity_of(at_edge, w);
-  edge.min_viscosity = std::min(min_viscosity_of(at_edge, w), edge.viscosity);
+  const MinViscosity least = min_viscosity_of(at_edge);
+  edge.min_viscosity = std::min(w * w * least.of_links + least.of_medium, edge.viscosity);
+  edge.min_of_medium = std::min(least.of_medium, edge.min_viscosity);
   edge.as_by_cordis = moved_as_by_cordis(network, at_edge, w);
   if (!network.maxwell_links.empty() && edge.viscosity > 0.0) {
     LiaisonGraph maxwell = with_edges(
@@ -494,6 +529,12 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
     edge.of_maxwell = std::min(max_viscosity_of(maxwell, w) / edge.viscosity, 1.0);
   }
   edge.error = error_of(edge, edge.viscosity, network.step, network.integrator);
+  for (const BandEdge& lighter : lighter_creeps(edge)) {
+    const OscillatorError error =
+        error_of(lighter, lighter.viscosity, network.step, network.integrator);
+    edge.error.creeps = edge.error.creeps && error.creeps;
+    if (std::abs(error.creep) > std::abs(edge.error.creep)) edge.error.creep = error.creep;
+  }
   if (0.5 * edge.viscosity >= w && 0.5 * edge.min_viscosity < w)
     edge.swinging = error_of(edge, edge.min_viscosity, network.step, network.integrator);
   return edge;

@@ -63,7 +63,9 @@ struct BandEdge {
   double frequency_hz = 0.0;
   double viscosity = 0.0;      ///< Z / m of the vibration, at most [1/s]
   double min_viscosity = 0.0;  ///< Z / m of the vibration, at least [1/s]
-  OscillatorError error;       ///< errors at the largest viscosity
+  double min_of_medium = 0.0;  ///< the part of it that a lower vibration has, too [1/s]
+  /// Errors at the largest viscosity. Of a creep it is the largest error of that and of lighter_creeps().
+  OscillatorError error;
 
   /// What of the vibration the integrator moves as `cordis` does, at most: what acts at the start.
   MovedAsByCordis as_by_cordis;
@@ -73,9 +75,14 @@ struct BandEdge {
   std::optional<OscillatorError> swinging;
 };
 
-/// The errors of that vibration with such a viscosity at another step.
+/// The errors of that vibration with such a viscosity at another step. Near the critical one it counts with 0.8 or
+/// 1.25 times the critical.
 OscillatorError error_of(const BandEdge& edge, double viscosity, double step,
                          engine::IntegratorKind integrator);
+
+/// The vibrations up to the edge whose creep may err more than with the largest viscosity: with the least one at
+/// the edge, and the highest one that may be damped by 1.25 times the critical. None where the edge does not creep.
+std::vector<BandEdge> lighter_creeps(const BandEdge& edge);
 
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz);

@@ -25,14 +25,24 @@ double largest_step(const BandEdge& edge, engine::IntegratorKind integrator, dou
   if (creeps != (applies == &OscillatorError::creeps)) {
     return std::numeric_limits<double>::infinity();
   }
+  const auto within = [&](double step) {
+    const OscillatorError reached = error_of(edge, edge.viscosity, step, integrator);
+    return reached.*applies && std::abs(error(reached)) <= tolerance;
+  };
+  // What creeps may have steps far beyond the limit of `cordis`. An error may pass 0 and grow again, so all shorter
+  // steps are to be within, too.
+  const double longest = creeps ? 2.0 / w : limit_step(w * w, edge.viscosity);
+  constexpr double kShortest = 1e-6;
+  constexpr double kRatio = 1.05;
   double low = 0.0;
-  // What creeps may have steps far beyond the limit of `cordis`.
-  double high = creeps ? 2.0 / w : limit_step(w * w, edge.viscosity);
+  double high = kShortest * longest;
+  while (high < longest && within(high)) {
+    low = high;
+    high = std::min(high * kRatio, longest);
+  }
   for (int n = 0; n < 60; ++n) {
     const double step = 0.5 * (low + high);
-    const OscillatorError reached = error_of(edge, edge.viscosity, step, integrator);
-    const bool within = reached.*applies && std::abs(error(reached)) <= tolerance;
-    (within ? low : high) = step;
+    (within(step) ? low : high) = step;
   }
   return low;
 }
@@ -144,6 +154,7 @@ FormulaRate rate_by_formula(const engine::NetworkDescription& network, const Acc
   };
   BandEdge edge = band_edge_of(per_gesture, graph, target.band_hz);
   consider_vibration(edge);
+  for (const BandEdge& lighter : lighter_creeps(edge)) consider_vibration(lighter);
   if (edge.swinging) {
     edge.viscosity = edge.min_viscosity;
     consider_vibration(edge);

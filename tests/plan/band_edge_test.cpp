@@ -168,6 +168,76 @@ TEST_P(BandEdge, HoldsBesideLinksWithStates) {
   }
 }
 
+/// The rates at which masses creep in a run, that are each held by a spring and a damper [1/s].
+std::vector<double> creep_rates(const NetworkDescription& scene, const std::vector<double>& exact) {
+  std::vector<double> rates;
+  for (std::uint32_t i = 0; i < exact.size(); ++i) {
+    World world = make_world(scene);
+    const auto steps = [&](double of_rate) {
+      return static_cast<int>(std::lround(of_rate / (exact[i] * scene.step)));
+    };
+    run(world, steps(4.0));  // the faster mode is gone
+    const double before = world.position(i + 1).x();
+    run(world, steps(2.0));
+    rates.push_back(std::log(before / world.position(i + 1).x()) / (steps(2.0) * scene.step));
+  }
+  return rates;
+}
+
+TEST_P(BandEdge, HoldsForWhatCreepsBesideHeavierDampers) {
+  if (GetParam() == IntegratorKind::kModal) return;  // exact
+  std::mt19937 random(test_seed());
+  double worst = 0.0;
+  for (int n = 0; n < rounds(20); ++n) {
+    NetworkDescription scene;
+    scene.dimension = 1;
+    scene.step = 2e-4;
+    scene.integrator = GetParam();
+    scene.mats = {fixed(Vec3::Zero())};
+    std::vector<double> exact;
+    for (std::uint32_t i = 1; i <= 3; ++i) {
+      const double w = decades(random, 30.0, 120.0);
+      const double rate = w * decades(random, 1.25, 20.0);  // Z / 2 m
+      scene.mats.push_back(mass(1.0, Vec3(0.001, 0, 0)));
+      scene.links.push_back({0, i, w * w, 2.0 * rate, 0.0});
+      exact.push_back(w * w / (rate + std::sqrt(rate * rate - w * w)));
+    }
+    const plan::OscillatorError edge = plan::plan_of(scene, 120.0 / (2.0 * M_PI)).band_edge.error;
+    ASSERT_TRUE(edge.creeps) << n;
+    const std::vector<double> rates = creep_rates(scene, exact);
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const double error = std::abs(rates[i] / exact[i] - 1.0);
+      EXPECT_LE(error, 1.05 * std::abs(edge.creep) + 1e-5) << n << ": mass " << i + 1;
+      worst = std::max(worst, error / std::abs(edge.creep));
+    }
+  }
+  EXPECT_GT(worst, 0.3);  // it says not much more than what is
+}
+
+TEST(BandEdge, ARateIsChosenForTheLightestCreep) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.001, 0, 0)), mass(1.0, Vec3(0.001, 0, 0))};
+  scene.links = {{0, 1, 1e4, 250.0, 0.0}, {0, 2, 1e3, 3e3, 0.0}};
+  const plan::FormulaRate chosen =
+      plan::rate_by_formula(scene, {.tolerance = 0.001, .band_hz = 20.0}, 1000.0);
+
+  scene.step = 1.0 / chosen.rate_hz;
+  EXPECT_NEAR(creep_rates(scene, {50.0})[0] / 50.0, 1.0, 1.05e-3) << chosen.rate_hz;
+}
+
+// Its frequency and the rate of its slower mode are known to a root of their errors alone.
+TEST(BandEdge, NearCriticalDampingNeedsNoRateWithoutEnd) {
+  for (const double viscosity : {245.0, 251.0, 251.32741, 251.4, 260.0}) {
+    NetworkDescription scene;
+    scene.dimension = 1;
+    scene.mats = {fixed(Vec3::Zero()), mass(1.0, Vec3(0.001, 0, 0))};
+    scene.links = {{0, 1, 125.6637 * 125.6637, viscosity, 0.0}};
+    const plan::AccuracyTarget target{.tolerance = 0.01, .band_hz = 20.0};
+    EXPECT_LE(plan::rate_by_formula(scene, target, 1000.0).rate_hz, 2e4) << viscosity;
+  }
+}
+
 TEST(BandEdge, OfAContactThatDoesNotTouchAtTheStartIsThatOfTheModes) {
   Held held(IntegratorKind::kModal);
   held.add_link(1e4, 1.0);

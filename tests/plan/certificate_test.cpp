@@ -368,8 +368,13 @@ TEST(Certificate, IsNotGivenToHeavyDampersThatTurnFarInAStep) {
     EXPECT_FALSE(stability_at_start(slow).uncertainty.has_value());
     World world = make_world(slow);
     const double begin = world.energy().total();
-    run(world, 8000);
-    EXPECT_LT(world.energy().kinetic + world.energy().elastic, 1.3 * begin);
+    double largest = begin;
+    for (int n = 0; n < 8000; ++n) {
+      world.step();
+      largest = std::max(largest, world.energy().kinetic + world.energy().elastic);
+    }
+    EXPECT_LT(largest, 1.4 * begin)
+        << viscosity;  // the energy of one swing varies by 1 / (1 - K' / 4)
   }
   EXPECT_NE(why_uncertain(pair_that_turns(0.8, 1e6)).find("0.2 rad"), std::string::npos);
   EXPECT_FALSE(stability_at_start(pair_that_turns(0.8, 10.0)).uncertainty.has_value());  // Z' = 0.2
