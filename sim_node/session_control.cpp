@@ -35,7 +35,9 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
       executor_(
           loop.mailbox(), loop.simulation().shared_scene(), start.epoch,
           [launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
-            return load_next_scene(launch, path, is_forced, problems);
+            scene::Scene scene = load_next_scene(launch, path, is_forced, problems);
+            if (problems.has_errors()) spdlog::warn("'load' was refused\n{}", problems.text());
+            return scene;
           },
           [this, is_forced](const scene::Scene& scene, config::Problems& problems) {
             check_stability(scene, is_forced, problems);

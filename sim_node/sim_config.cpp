@@ -29,6 +29,16 @@ bool is_of_cordis(const std::filesystem::path& file) {
   return false;
 }
 
+/// Checks every port of a scene against the device files of the launch, and its stability.
+scene::Scene checked(PlannedScene planned, const config::Launch& launch, bool force,
+                     config::Problems& problems) {
+  if (!problems.has_errors()) {
+    check_devices(launch, planned.scene, problems);
+    check_stability(planned.scene, force, problems);
+  }
+  return std::move(planned.scene);
+}
+
 }  // namespace
 
 SimSection read_sim_section(const config::LaunchNode& node, config::Problems& problems) {
@@ -77,12 +87,8 @@ SimConfig read_sim_config(const config::Launch& launch, const config::LaunchNode
 scene::Scene load_checked_scene(const config::Launch& launch, const std::string& path,
                                 const config::Place& referrer, bool force,
                                 config::Problems& problems) {
-  PlannedScene planned = plan_scene(launch.resolve(path).string(), referrer, problems);
-  if (!problems.has_errors()) {
-    check_devices(launch, planned.scene, problems);
-    check_stability(planned.scene, force, problems);
-  }
-  return std::move(planned.scene);
+  return checked(plan_scene(launch.resolve(path).string(), referrer, problems), launch, force,
+                 problems);
 }
 
 scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
@@ -106,7 +112,10 @@ scene::Scene load_next_scene(const config::Launch& launch, const std::string& pa
     problems.error({path, 0, 0}, "this is no scene: it has no line that begins with 'cordis: 1'");
     return {};
   }
-  return load_checked_scene(launch, file.string(), {}, force, problems);
+  problems.read_below(folder.string());
+  PlannedScene planned = plan_scene(file.string(), {}, problems);
+  problems.read_below({});  // the launch file may name device files of any folder
+  return checked(std::move(planned), launch, force, problems);
 }
 
 }  // namespace cordis::sim

@@ -59,8 +59,8 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 config::Problems& problems);
 
 /// Loads the scene of a path that a command names: every process of the session may send one. It
-/// reads a regular file below the folder of the launch file, links and `..` resolved, that says it
-/// is one of Cordis; the answer reveals nothing of any other. `cordis ctl` sends a whole path when
+/// reads regular files below the folder of the launch file alone, links and `..` resolved, the one of
+/// the path if it says it is one of Cordis; the answer reveals nothing of any other. `cordis ctl` sends a whole path when
 /// it finds the file where it is called, else the path as it was written.
 scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
                              config::Problems& problems);

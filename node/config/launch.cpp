@@ -9,6 +9,7 @@
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
 #include "node/config/nearest_word.h"
+#include "node/config/regular_file.h"
 #include "node/config/yaml_reader.h"
 
 namespace cordis::config {
@@ -263,11 +264,7 @@ std::filesystem::path Launch::real_folder() const {
 
 std::filesystem::path Launch::find_below(const std::string& path) const {
   const std::filesystem::path folder = real_folder();
-  std::error_code failure;
-  const std::filesystem::path found = std::filesystem::weakly_canonical(folder / path, failure);
-  if (failure || folder.empty()) return {};
-  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), found.begin(), found.end());
-  return end == folder.end() && rest != found.end() ? found : std::filesystem::path();
+  return path_below(folder, folder / path);
 }
 
 void check_domain(const Launch& launch, Problems& problems) {

@@ -88,11 +88,15 @@ ConfigError::ConfigError(std::vector<Problem> problems)
     : std::runtime_error(text_of(problems)), problems_(std::move(problems)) {}
 
 void Problems::error(const Place& place, std::string message, std::string hint) {
-  add({Problem::Severity::kError, place, std::move(message), std::move(hint), {}});
+  add({Problem::Severity::kError, place, std::move(message), std::move(hint), {}, readings_ > 0});
+}
+
+void Problems::error_without_quote(const Place& place, std::string message, std::string hint) {
+  add({Problem::Severity::kError, place, std::move(message), std::move(hint), {}, false});
 }
 
 void Problems::warning(const Place& place, std::string message, std::string hint) {
-  add({Problem::Severity::kWarning, place, std::move(message), std::move(hint), {}});
+  add({Problem::Severity::kWarning, place, std::move(message), std::move(hint), {}, readings_ > 0});
 }
 
 void Problems::add(Problem problem) {

@@ -25,6 +25,8 @@ struct Problem {
   std::string message;  ///< what is wrong and what was expected, one sentence without a full stop
   std::string hint;     ///< "did you mean 'x'?", may be empty
   std::string source_line;  ///< the line of the file, may be empty
+  /// The message or the hint may quote what a file says: it was found while one was read.
+  bool may_quote = false;
 
   /// The problem as a person reads it; several lines, no trailing newline. Control characters that
   /// came from the file are shown as '?', and only the part of a long line around the caret is
@@ -71,6 +73,25 @@ class Problems {
     return files_ ? &*files_ : nullptr;
   }
 
+  /// From now on load_file() reads files below this folder alone, links and `..` resolved.
+  void read_below(std::string folder) { folder_ = std::move(folder); }
+  /// Empty: files of any folder are read.
+  const std::string& only_folder() const noexcept { return folder_; }
+
+  /// What is found while one of these lives may quote what a file says.
+  class Reading {
+   public:
+    explicit Reading(Problems& problems) : problems_(problems) { ++problems_.readings_; }
+    ~Reading() { --problems_.readings_; }
+    Reading(const Reading&) = delete;
+    Reading& operator=(const Reading&) = delete;
+
+   private:
+    Problems& problems_;
+  };
+  /// Like error(), of a message without a word of a file.
+  void error_without_quote(const Place& place, std::string message, std::string hint = {});
+
   bool has_errors() const noexcept { return error_count_ > 0; }
   /// True if no more of them will be shown: then a hint is not worth the time of finding it.
   bool is_full() const noexcept { return problems_.size() >= kMaxProblems; }
@@ -94,6 +115,8 @@ class Problems {
   std::vector<Problem> problems_;
   std::vector<std::pair<std::string, std::vector<std::string>>> sources_;  // file, its lines
   std::optional<std::vector<SourceFile>> files_;
+  std::string folder_;  // read_below()
+  int readings_ = 0;
   std::size_t error_count_ = 0;
   std::size_t left_out_ = 0;
 };

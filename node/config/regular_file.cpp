@@ -1,6 +1,7 @@
 // node/config/regular_file.cpp
 #include "node/config/regular_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -52,6 +53,15 @@ FileBytes read_regular_file(const std::string& path, std::size_t max_bytes) {
   if (result.bytes.size() > max_bytes)
     return {{}, "it is larger than " + std::to_string(max_bytes >> 20) + " MiB"};
   return result;
+}
+
+std::filesystem::path path_below(const std::filesystem::path& folder,
+                                 const std::filesystem::path& path) {
+  std::error_code failure;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(path, failure);
+  if (failure || folder.empty()) return {};
+  const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), found.begin(), found.end());
+  return end == folder.end() && rest != found.end() ? found : std::filesystem::path();
 }
 
 std::string reason_not_to_write(const std::string& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 namespace cordis::config {
@@ -15,6 +16,10 @@ struct FileBytes {
 /// Reads a regular file. A FIFO, a socket or a device is refused without waiting for its other end.
 /// @param max_bytes  a larger file is refused
 [[nodiscard]] FileBytes read_regular_file(const std::string& path, std::size_t max_bytes);
+
+/// The path below `folder`, which has no links, with links and `..` resolved; empty when it is not below it.
+std::filesystem::path path_below(const std::filesystem::path& folder,
+                                 const std::filesystem::path& path);
 
 /// Why a file cannot be written: it is there and no regular file, or a folder; empty when nothing
 /// speaks against it. Does not create it.

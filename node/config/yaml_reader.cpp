@@ -135,10 +135,21 @@ FileBytes bytes_of(const std::string& path, const Problems& problems, std::size_
   return {{}, "it is not among the files that were recorded"};
 }
 
+bool may_be_read(const std::string& path, const Problems& problems) {
+  const std::string& folder = problems.only_folder();
+  return folder.empty() || !path_below(folder, path).empty();
+}
+
 }  // namespace
 
 Value load_file(const std::string& path, Problems& problems, const Place& referrer,
                 std::size_t max_bytes) {
+  if (!may_be_read(path, problems)) {
+    problems.error_without_quote(referrer,
+                                 "a file named here is not below the folder of the launch "
+                                 "file, from where alone files are loaded");
+    return {};
+  }
   const auto [bytes, reason] = bytes_of(path, problems, max_bytes);
   if (!reason.empty()) {
     std::error_code failure;
@@ -146,7 +157,7 @@ Value load_file(const std::string& path, Problems& problems, const Place& referr
         problems.given_files() == nullptr && !std::filesystem::exists(path, failure);
     const std::string hint = missing ? hint_for_missing_file(path) : std::string{};
     if (referrer.file.empty()) {
-      problems.error({path, 0, 0}, "cannot be read: " + reason, hint);
+      problems.error_without_quote({path, 0, 0}, "cannot be read: " + reason, hint);
     } else {
       problems.error(referrer, "cannot read '" + path + "': " + reason, hint);
     }

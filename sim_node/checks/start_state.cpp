@@ -126,6 +126,7 @@ std::string state_file_text(const scene::Scene& scene, const engine::Snapshot& s
 
 void read_start_state(scene::Scene& scene, config::Problems& problems) {
   if (scene.start_state_file.empty()) return;
+  const config::Problems::Reading reading(problems);
   CORDIS_ASSERT(scene.network.step > 0.0 && scene.step_rate_hz > 0.0);
   const std::filesystem::path file =
       std::filesystem::path(scene.file).parent_path() / scene.start_state_file;

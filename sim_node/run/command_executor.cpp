@@ -17,10 +17,24 @@ std::string at_step(const Request& request) {
   return " at step " + std::to_string(request.step);
 }
 
-/// All that is wrong in the files of a scene, behind one sentence.
+/// All that is wrong with a scene, behind one sentence. Every process of the session reads it: of
+/// what was found while a file was read it has the places alone.
 std::string refusal_of(const std::string& path, const config::Problems& problems) {
-  return "'" + path + "' cannot be played (" + config::count_text(problems.error_count(), "error") +
-         "), the present scene goes on\n" + text_without_lines(problems);
+  std::string text = "'" + path + "' cannot be played (" +
+                     config::count_text(problems.error_count(), "error") +
+                     "), the present scene goes on";
+  bool is_short = false;
+  for (config::Problem problem : problems.in_order()) {
+    problem.source_line.clear();
+    if (problem.may_quote) {
+      problem.message = "something is wrong here";
+      problem.hint.clear();
+      is_short = true;
+    }
+    text += '\n' + problem.text();
+  }
+  if (is_short) text += "\n`cordis check` of the file, and the log of this node, say what is wrong";
+  return text;
 }
 
 SceneSource source_of(const scene::Scene& scene, const config::Problems& problems) {

@@ -60,7 +60,7 @@ class RequestMaker {
   std::uint64_t version_ = 1;
 };
 
-/// All that is wrong in files, for who need not be allowed to read them: without their lines.
+/// All that is wrong, without the lines of files.
 std::string text_without_lines(const config::Problems& problems);
 
 }  // namespace cordis::sim

@@ -278,8 +278,7 @@ links:
 
 TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   start();
-  expect_refused({"load", "bad.yaml"},
-                 "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
+  expect_refused({"load", "bad.yaml"}, "bad.yaml:2:8: error: something is wrong here\n");
   expect_refused({"load", "nowhere.yaml"}, "cannot be read");
   expect_refused({"load", "nowhere/scene.yaml"},
                  "error: there is no such file, neither where `cordis ctl` was called nor in '");
@@ -705,6 +704,57 @@ name: not_quoted
   const std::string text = answer_to_load("broken.yaml");
   EXPECT_NE(text.find("broken.yaml:3:"), std::string::npos) << "the place is reported: " << text;
   EXPECT_EQ(text.find("not_quoted"), std::string::npos) << text;
+}
+
+/// A scene that names the other files it is made of in its last lines.
+std::string wall_scene_with(const std::string& lines) {
+  return wall_scene(400.0) + lines;
+}
+
+TEST_F(ControlOfFiles, ThatASceneNamesLieBelowTheFolderToo) {
+  start();
+  const std::string name = elsewhere_.filename().string();
+  std::ofstream(elsewhere_ / "liaisons.yaml") << R"(cordis: 1
+liaisons:
+  swordfish: {kind: spring, stiffness_n_per_m: 1}
+)";
+  std::filesystem::create_symlink(elsewhere_ / "secret", session_.folder() / "linked");
+  std::filesystem::create_symlink(elsewhere_, session_.folder() / "link");
+  for (const std::string& file :
+       {(elsewhere_ / "secret").string(), "../" + name + "/secret", std::string("linked"),
+        "../" + name + "/liaisons.yaml", std::string("link/liaisons.yaml"),
+        std::string("/etc/passwd"), std::string("/etc/no_such_file")}) {
+    for (const std::string& lines :
+         {"start_state: " + file + "\n", "parts: {include: '" + file + "'}\n"}) {
+      session_.add_file("names.yaml", wall_scene_with(lines));
+      const std::string text = answer_to_load("names.yaml");
+      EXPECT_NE(text.find(": error: a file named here is not below the folder of the launch file, "
+                          "from where alone files are loaded"),
+                std::string::npos)
+          << lines << text;
+      EXPECT_EQ(text.find("root"), std::string::npos) << text;
+    }
+  }
+}
+
+TEST_F(ControlOfFiles, OfCordisAreNotQuotedEither) {
+  start();
+  session_.add_file("private.yaml", R"(cordis: 1
+password: swordfish
+space: swordfish
+)");
+  session_.add_file("list", "password swordfish\n");
+  session_.add_file("state", wall_scene_with("start_state: list\n"));
+  session_.add_file("part", wall_scene_with("parts: {include: list}\n"));
+  session_.add_file("missing", wall_scene_with("parts: {include: swordfish}\n"));
+  for (const char* file : {"private.yaml", "state", "part", "missing"}) {
+    const std::string text = answer_to_load(file);
+    EXPECT_NE(text.find(": error: something is wrong here\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("`cordis check` of the file, and the log of this node, say what is wrong"),
+              std::string::npos)
+        << text;
+  }
+  EXPECT_TRUE(session_.node("sim").wait_for_output("unknown key 'password' in scene", kPatience));
 }
 
 TEST_F(ControlOfFiles, ThatNobodyWritesToDoNotHoldUpTheNode) {

@@ -182,11 +182,13 @@ Scene read_scene(const Value& root, const std::string& path, config::Problems& p
 
 Scene load_scene(const std::string& path, config::Problems& problems,
                  const config::Place& referrer) {
+  const config::Problems::Reading reading(problems);
   return read_scene(config::load_file(path, problems, referrer), path, problems);
 }
 
 Scene load_scene_text(const std::string& text, const std::string& name,
                       config::Problems& problems) {
+  const config::Problems::Reading reading(problems);
   return read_scene(config::load_text(text, name, problems), name, problems);
 }
 
