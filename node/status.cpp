@@ -74,6 +74,14 @@ void StatusPublisher::publish_now() noexcept {
   wake_.release();
 }
 
+void StatusPublisher::publish_and_wait() noexcept {
+  const std::uint64_t wanted = begun_count_.load() + 1;
+  wake_.release();
+  for (std::uint64_t sent = sent_count_.load(); sent < wanted; sent = sent_count_.load()) {
+    sent_count_.wait(sent);
+  }
+}
+
 void StatusPublisher::loop() {
   while (!ending_) {
     publish();
@@ -115,6 +123,7 @@ void StatusPublisher::report_rejoin() {
 }
 
 void StatusPublisher::publish() {
+  ++begun_count_;
   const std::int64_t now = monotonic_nsec();
   status_.text("");
   fill_(status_);
@@ -133,6 +142,8 @@ void StatusPublisher::publish() {
   status_.time_nsec(now);
   status_.memory_bytes(resident_bytes());
   static_cast<void>(writer_.write(status_));  // the next one stands for it
+  ++sent_count_;
+  sent_count_.notify_all();
 }
 
 }  // namespace cordis::node

@@ -43,6 +43,9 @@ class StatusPublisher {
   /// pauses, and is exact where this says when they begin and end. Real time: wakes the publisher's
   /// thread, takes no lock.
   void publish_now() noexcept;
+  /// Publishes at once, and returns when DDS has sent a status whose figures are of now: whatever
+  /// happens to this process then, others have it. For no loop; while the publisher lives.
+  void publish_and_wait() noexcept;
 
  private:
   void loop();
@@ -66,6 +69,8 @@ class StatusPublisher {
   double target_rate_hz_ = 0.0;  // published last
   bool was_paused_ = false;      // likewise
   std::counting_semaphore<> wake_{0};
+  std::atomic<std::uint64_t> begun_count_{0};  // of publish()
+  std::atomic<std::uint64_t> sent_count_{0};   // likewise
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

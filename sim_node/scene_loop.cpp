@@ -101,9 +101,9 @@ bool SceneLoop::execute() {
   if (is_forced_) simulation().keep_devices();
   mailbox_.report_steps_left(runner_.steps_left());
   if (request->source->verb == msg::VERB_LOAD) set_time_scale(1.0);
-  mailbox_.executed();
-  if (new_scene) submit_frame();
   record_state();
+  mailbox_.executed();  // who waits for it finds the new state
+  if (new_scene) submit_frame();
   if (publisher_ != nullptr && was_paused != runner_.is_paused()) publisher_->publish_now();
   return true;
 }

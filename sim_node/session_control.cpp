@@ -86,7 +86,11 @@ node::Answer SessionControl::change_time_scale(const std::string& argument) {
 node::Answer SessionControl::execute(msg::ControlVerb verb,
                                      const std::function<node::Answer()>& command) {
   const auto before = executor_.scene();
+  const bool was_paused = snapshot_.is_paused();
   node::Answer answer = command();
+  // The launcher knows whether to pause the next life of this node before the sender knows that
+  // the scene is paused.
+  if (snapshot_.is_paused() != was_paused) status_.publish_and_wait();
   if (verb == msg::VERB_LOAD && answer.accepted) status_.publish_now();
   if (executor_.scene() != before) devices_.play(*executor_.scene());
   const LoadedScene& loaded = loop_.runner().loaded_scene();

@@ -31,6 +31,8 @@ class StatusSnapshot {
   /// Loop: late and silent ticks. Wait-free.
   node::LateTicks& late_ticks() noexcept { return late_ticks_; }
   void set_phase(msg::NodePhase phase) noexcept { phase_.store(phase); }
+  /// Any thread.
+  bool is_paused() const noexcept { return phase_.load() == msg::PHASE_PAUSED; }
   /// Loop: the figures of now; those under the lock only when the status thread does not hold it.
   /// @param partners  of the simulation @param dropped  messages and frames that got lost on DDS
   void record(Runner& runner, const PartnersSeen& partners, std::uint64_t dropped);

@@ -107,6 +107,7 @@ class Session : public Watcher {
   }
 
   std::vector<std::string> words_of_next_life(std::size_t process) override {
+    take_statuses();  // the last one of a node may arrive after its end is seen
     const PlannedNode& node = plan_.nodes[process];
     const std::optional<bool> paused = board_.was_paused(node.name);
     if (node.program != "sim_node" || !paused) return {};

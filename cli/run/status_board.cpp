@@ -139,23 +139,29 @@ std::string aligned(const std::vector<Row>& rows) {
 }  // namespace
 
 bool StatusBoard::put(const msg::NodeStatus& status) {
+  remember_pause(status);
   const auto life = first_epoch_of_.find(status.node());
   if (status.epoch() < (life == first_epoch_of_.end() ? first_epoch_ : life->second)) return false;
   msg::NodeStatus& newest = newest_[status.node()];
   const std::uint64_t silent_ticks = newest.silent_ticks();
   newest = status;
   if (stopping_) newest.silent_ticks(silent_ticks);
-  const msg::NodePhase phase = status.phase();
-  if (status.kind() == msg::KIND_SIM_NODE && phase != msg::PHASE_STARTING &&
-      !node::has_ended(phase))
-    was_paused_[status.node()] = phase == msg::PHASE_PAUSED;
   return true;
+}
+
+void StatusBoard::remember_pause(const msg::NodeStatus& status) {
+  const msg::NodePhase phase = status.phase();
+  if (status.epoch() < first_epoch_ || status.kind() != msg::KIND_SIM_NODE ||
+      phase == msg::PHASE_STARTING || node::has_ended(phase))
+    return;
+  Pause& known = was_paused_[status.node()];
+  if (status.epoch() >= known.epoch) known = {status.epoch(), phase == msg::PHASE_PAUSED};
 }
 
 std::optional<bool> StatusBoard::was_paused(const std::string& node) const {
   const auto known = was_paused_.find(node);
   if (known == was_paused_.end()) return std::nullopt;
-  return known->second;
+  return known->second.is_paused;
 }
 
 void StatusBoard::begin_life(const std::string& node, std::uint64_t first_epoch) {

@@ -27,8 +27,8 @@ class StatusBoard {
   /// @return whether it was taken.
   bool put(const msg::NodeStatus& status);
 
-  /// A node has been started again: what an older life of it said no longer counts, but for
-  /// was_paused(). @param first_epoch  as above
+  /// A node has been started again: what an older life of it said, or says as it arrives late, no
+  /// longer counts, but for was_paused(). @param first_epoch  as above
   void begin_life(const std::string& node, std::uint64_t first_epoch);
 
   /// True if the newest status of a sim_node that played, in this or an earlier life, is `paused`;
@@ -46,11 +46,17 @@ class StatusBoard {
       const std::string& node) const;  ///< nullptr when this life of it never spoke
 
  private:
+  void remember_pause(const msg::NodeStatus& status);
+
   std::uint64_t first_epoch_;
   bool stopping_ = false;
   std::map<std::string, std::uint64_t> first_epoch_of_;  // of those that were started again
   std::map<std::string, msg::NodeStatus> newest_;
-  std::map<std::string, bool> was_paused_;
+  struct Pause {
+    std::uint64_t epoch = 0;
+    bool is_paused = false;
+  };
+  std::map<std::string, Pause> was_paused_;
 };
 
 /// A line per node in the order of `nodes`. It has the rate reached, overruns, latency, energy

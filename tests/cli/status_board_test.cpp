@@ -71,6 +71,24 @@ TEST(StatusBoard, KnowsWhetherASimWasPausedBeforeItDied) {
   EXPECT_EQ(board.was_paused("sim"), false);
 }
 
+TEST(StatusBoard, KnowsOfAPauseThatArrivesAfterTheDeath) {
+  StatusBoard board(/*first_epoch=*/100);
+  msg::NodeStatus status = status_of("sim", msg::KIND_SIM_NODE, 101);
+  status.phase(msg::PHASE_RUNNING);
+  board.put(status);
+  board.begin_life("sim", 200);
+  status.phase(msg::PHASE_PAUSED);
+  EXPECT_FALSE(board.put(status));
+  EXPECT_EQ(board.find("sim"), nullptr);
+  EXPECT_EQ(board.was_paused("sim"), true);
+
+  msg::NodeStatus next = status_of("sim", msg::KIND_SIM_NODE, 201);
+  next.phase(msg::PHASE_RUNNING);
+  board.put(next);
+  board.put(status);
+  EXPECT_EQ(board.was_paused("sim"), false) << "the newer life counts";
+}
+
 TEST(StatusBoard, RefusesProcessesOlderThanTheRun) {
   StatusBoard board(/*first_epoch=*/100);
   EXPECT_FALSE(board.put(status_of("sim", msg::KIND_SIM_NODE, 99)));

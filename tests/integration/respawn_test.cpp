@@ -175,6 +175,32 @@ TEST_F(Respawn, OfAPausedSimGivesNoForceBeforeResume) {
   EXPECT_TRUE(is_felt());
 }
 
+/// A sim_node that is killed as soon as `pause` was confirmed.
+TEST_F(Respawn, OfASimThatSaidItIsPausedStaysPaused) {
+  ASSERT_TRUE(all_run());
+  for (int life = 0; life < rounds(3); ++life) {
+    const std::uint64_t old_epoch = status_.of("sim").epoch();
+    const pid_t sim = process_of(launcher_, "sim");
+    ChildProcess pause({program_path("cordis"), "ctl", "plucked_string", "--domain",
+                        std::to_string(own_domain()), "pause"});
+    ASSERT_TRUE(pause.wait_for_output("paused at step", kPatience));
+    ASSERT_EQ(kill(sim, SIGKILL), 0);
+    pause.wait(kPatience);
+
+    ASSERT_TRUE(status_.wait_for("sim",
+                                 [&](const msg::NodeStatus& status) {
+                                   return status.epoch() != old_epoch &&
+                                          status.phase() != msg::PHASE_STARTING;
+                                 }))
+        << "life " << life;
+    EXPECT_EQ(status_.of("sim").phase(), msg::PHASE_PAUSED) << "life " << life;
+    ChildProcess resume({program_path("cordis"), "ctl", "plucked_string", "--domain",
+                         std::to_string(own_domain()), "resume"});
+    ASSERT_EQ(resume.wait(kPatience), 0);
+    ASSERT_TRUE(status_.wait_for_phase("sim", msg::PHASE_RUNNING));
+  }
+}
+
 config::Launch load(const std::string& path) {
   config::Problems problems;
   config::Launch launch = config::load_launch(path, {}, problems);
