@@ -137,6 +137,7 @@ dds::ParticipantConfig NodeStart::config() const {
   dds::ParticipantConfig config{domain, launch.session, node->name,
                                 launch.clock == config::Clock::kLockstep, launch.has_standbys()};
   config.network = network;
+  config.clock = config::clock_word(launch.clock);
   if (identity) config.security = identity->security;
   return config;
 }

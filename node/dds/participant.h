@@ -28,6 +28,7 @@ struct ParticipantConfig {
   bool observes = false;         ///< force loops send to it from another thread, 2 ms later
   bool for_loop = false;         ///< a thread that waits on an Arrival takes its samples itself
   Security security{};           ///< on in all processes of a session, or in none
+  std::string clock{};  ///< word of the clock of the launch file; empty: it has none to compare
 };
 
 /// What all that a participant owns begins with, in DDS.

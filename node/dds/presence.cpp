@@ -103,7 +103,8 @@ fast::DomainParticipantQos participant_qos(const ParticipantConfig& config,
   using eprosima::fastrtps::Duration_t;
   fast::DomainParticipantQos qos;
   qos.name(config.session + "/" + config.node);
-  const std::string identity = process_identity() + wire_version_mark(config.wire_version);
+  const std::string identity =
+      process_identity() + clock_mark(config.clock) + wire_version_mark(config.wire_version);
   qos.user_data().setValue({identity.begin(), identity.end()});
 
   // UDP on one address alone. On 127.0.0.1 it is as fast as shared memory, and no process blocks
@@ -499,6 +500,14 @@ void Presence::remember(const rtps::WriterProxyData& writer, bool gone) {
   found.partitions = std::move(partitions);
 }
 
+/// Precondition: the lock is held.
+bool Presence::has_other_clock(const ParticipantPrefix& participant) const {
+  const auto known = peers_.find(participant);
+  if (known == peers_.end() || config_.clock.empty()) return false;
+  const std::string_view clock = marked_clock(known->second.peer.process);
+  return !clock.empty() && clock != config_.clock;
+}
+
 /// DDS would be silent about what does not fit.
 template <class Endpoint>
 void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
@@ -515,7 +524,8 @@ void Presence::compare(const Endpoint& endpoint, bool writes, bool gone) {
     if (exclusive != (row.exclusive_for_msec > 0)) {
       what = exclusive ? "names a hot standby ('standby_for'), and that of this node none"
                        : "names no hot standby ('standby_for'), and that of this node does";
-    } else if (reliable != row.reliable && reliable != writes) {
+    } else if ((reliable != row.reliable && reliable != writes) ||
+               has_other_clock(prefix_of(endpoint.guid()))) {
       what = "has another clock than that of this node";
     }
     if (what == nullptr) continue;

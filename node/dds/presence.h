@@ -117,6 +117,7 @@ class Presence final : public fast::DomainParticipantListener {
   bool concerns(const Peer& peer) const;  ///< it is of the session, or all are read
   void count_elsewhere();
   void evaluate_discovered(const ParticipantPrefix& participant);
+  bool has_other_clock(const ParticipantPrefix& participant) const;
   template <class Endpoint>
   void compare(const Endpoint& endpoint, bool writes, bool gone);
   void remember(const eprosima::fastrtps::rtps::WriterProxyData& writer, bool gone);

@@ -10,6 +10,7 @@ namespace cordis::dds {
 namespace {
 
 constexpr std::string_view kMark = " wire ";
+constexpr std::string_view kClockMark = " clock ";
 
 /// Participants that speak another version, of which there are none as a rule.
 struct OtherVersions {
@@ -28,6 +29,17 @@ OtherVersions& other_versions() {
 
 std::string wire_version_mark(std::uint32_t version) {
   return std::string(kMark) + std::to_string(version);
+}
+
+std::string clock_mark(const std::string& clock) {
+  return clock.empty() ? "" : std::string(kClockMark) + clock;
+}
+
+std::string_view marked_clock(std::string_view user_data) noexcept {
+  const std::size_t mark = user_data.rfind(kClockMark);
+  if (!user_data.starts_with("process ") || mark == std::string_view::npos) return {};
+  const std::string_view rest = user_data.substr(mark + kClockMark.size());
+  return rest.substr(0, rest.find(' '));
 }
 
 std::optional<std::uint32_t> marked_wire_version(std::string_view user_data) noexcept {

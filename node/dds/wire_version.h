@@ -14,6 +14,12 @@ namespace cordis::dds {
 /// Behind process_identity() in the user data of a participant.
 std::string wire_version_mark(std::uint32_t version);
 
+/// Likewise, before the wire_version_mark(): the word of a clock; empty for none.
+std::string clock_mark(const std::string& clock);
+
+/// The clock in the user data of a participant; empty when it says none.
+std::string_view marked_clock(std::string_view user_data) noexcept;
+
 /// The version in the user data of a participant. 0: it is of Cordis and older than all versions;
 /// nothing: it is of another program, which is evaluated by the `wire_version` of its messages.
 std::optional<std::uint32_t> marked_wire_version(std::string_view user_data) noexcept;

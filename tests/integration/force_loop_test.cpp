@@ -87,6 +87,21 @@ TEST_P(ForceLoop, NodesOfAnotherClockSayItInTheirStatusAndInTheLog) {
   }
 }
 
+TEST(ForceLoopOfAnyClock, ADeviceBesideASceneWithoutRealTimeIsToldOfTheOtherClock) {
+  LiveSession session("asap", kSimAndKey);
+  StatusWatch status(session.participant());
+  session.add_file("scene.yaml", wall_scene(200.0));
+  session.add_file("key.yaml", steady_key(-0.01, 0.0));
+  session.start("sim_node", "sim");
+  session.start("device_node", "keyboard", {"clock=realtime"});
+
+  for (const char* node : {"sim", "keyboard"}) {
+    EXPECT_TRUE(
+        session.node(node).wait_for_output("has another clock than that of this node", kPatience))
+        << node << ": " << status.of(node).text();
+  }
+}
+
 /// How many threads of a process have each priority of SCHED_FIFO.
 std::map<int, int> realtime_threads_of(pid_t process) {
   std::map<int, int> counts;

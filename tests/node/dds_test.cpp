@@ -693,6 +693,48 @@ TEST(Dds, SaysThatAProcessHasAnotherClock) {
   EXPECT_TRUE(eventually([&] { return reliable.matched_count() == 1; })) << "the same clock";
 }
 
+TEST(Dds, SaysThatAProcessHasAnotherClockWhoseQualityOfServiceIsTheSame) {
+  ParticipantConfig of_sim = member("paces", "sim");
+  of_sim.clock = "asap";
+  ParticipantConfig of_device = member("paces", "keyboard");
+  of_device.clock = "realtime";
+  Participant sim(of_sim);
+  Participant device(of_device);
+  Participant without(member("paces", "tool"));
+  Reader<msg::GesturePositions> reader(sim, Topic::kPositions);
+  Writer<msg::GesturePositions> of_tool(without, Topic::kPositions);
+  ASSERT_TRUE(eventually([&] { return of_tool.matched_count() == 1; }));
+  EXPECT_EQ(sim.mismatch(), "") << "it has no clock";
+  Writer<msg::GesturePositions> writer(device, Topic::kPositions);
+
+  for (Participant* one : {&sim, &device}) {
+    EXPECT_TRUE(eventually([&] { return !one->mismatch().empty(); }));
+    EXPECT_NE(one->mismatch().find("has another clock than that of this node"), std::string::npos)
+        << one->mismatch();
+  }
+}
+
+TEST(StatusPublisher, HasSentAStatusOfNowWhenItHasWaited) {
+  Participant viewer(member("status sent", "view"));
+  Reader<msg::NodeStatus> reader(viewer, Topic::kStatus);
+  Participant sim(member("status sent", "sim"));
+  std::atomic<std::uint64_t> ticks = 0;
+  std::atomic<std::uint64_t> filled = 0;
+  node::StatusPublisher publisher(sim, msg::KIND_SIM_NODE, 77, [&](msg::NodeStatus& status) {
+    status.ticks(ticks.load());
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    filled = status.ticks();
+  });
+  msg::NodeStatus status;
+  ASSERT_TRUE(receive(reader, status));
+  for (std::uint64_t now = 1; now <= 50; ++now) {
+    ticks = now;
+    publisher.publish_and_wait();
+    EXPECT_EQ(filled.load(), now);
+  }
+  EXPECT_TRUE(eventually([&] { return reader.take(status) && status.ticks() == 50; }));
+}
+
 TEST(Dds, ReadsNothingOfAnotherVersionOfTheWireAndNamesBoth) {
   ParticipantConfig newer = member("versions", "keyboard");
   newer.wire_version = msg::WIRE_VERSION + 6;
@@ -738,6 +780,14 @@ TEST(WireVersion, OfAProcessStandsInItsUserData) {
   EXPECT_EQ(marked_wire_version(before), 0u) << "older than all versions";
   EXPECT_EQ(marked_wire_version(before + " wire x"), 0u);
   EXPECT_EQ(marked_wire_version(""), std::nullopt) << "another program";
+}
+
+TEST(Clock, OfAProcessStandsInItsUserData) {
+  const std::string before = "process 1b2c 4026531836 4711 99";
+  EXPECT_EQ(marked_clock(before + clock_mark("asap") + wire_version_mark(12)), "asap");
+  EXPECT_EQ(marked_wire_version(before + clock_mark("asap") + wire_version_mark(12)), 12u);
+  EXPECT_EQ(marked_clock(before + clock_mark("") + wire_version_mark(12)), "");
+  EXPECT_EQ(marked_clock("another program clock asap"), "");
 }
 
 /// A take of inputs has scenes with their files: the largest has 5 MB, and 256 messages are kept.
