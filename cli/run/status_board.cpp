@@ -30,7 +30,7 @@ std::string causes_of(const msg::NodeStatus& status) {
   const auto add = [&text](const char* cause, std::uint64_t ticks) {
     if (ticks > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", cause, ticks);
   };
-  add("machine", status.late_by_machine());
+  add("not woken", status.late_by_machine());
   add(simulates ? "scene too slow" : "own work too slow", status.late_by_work());
   add(simulates ? "device silent" : "scene silent", status.silent_ticks());
   return text.empty() ? "none" : text;

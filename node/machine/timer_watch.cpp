@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <csignal>
 
+#include <pthread.h>
+#include <sched.h>
 #include <sys/prctl.h>
 
 #include "node/machine/deadline_record.h"
+#include "node/machine/processor_quota.h"
+#include "node/paced_loop.h"
 #include "node/time.h"
 
 namespace cordis::machine {
@@ -21,6 +25,8 @@ constexpr auto kFirstCheckNsec = static_cast<std::int64_t>(TimerWatch::kFirstChe
 TimerWatch::TimerWatch()
     : at_begin_(read_processor_time(files_)),
       begun_nsec_(node::monotonic_nsec()),
+      own_nsec_at_begin_(family_processor_nsec()),
+      core_count_(usable_processors(files_)),
       thread_([this] { watch(); }) {}
 
 TimerWatch::~TimerWatch() {
@@ -36,6 +42,9 @@ void TimerWatch::watch() {
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are the other threads' business
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+  sched_param above_loops{};
+  above_loops.sched_priority = node::kLoopPriority + 1;
+  pthread_setschedparam(pthread_self(), SCHED_FIFO, &above_loops);  // where it is allowed
   std::int64_t due = begun_nsec_;
   for (;;) {
     const bool is_first_check = due - begun_nsec_ < kFirstCheckNsec;
@@ -62,10 +71,16 @@ void TimerWatch::record(std::int64_t late_nsec, std::int64_t period_nsec) {
 
 TimerFigures TimerWatch::figures() const {
   const std::optional<double> stolen = stolen_share(at_begin_, read_processor_time(files_));
+  const auto own = static_cast<double>(family_processor_nsec() - own_nsec_at_begin_);
+  const auto passed = static_cast<double>(node::monotonic_nsec() - begun_nsec_);
   const std::lock_guard lock(mutex_);
   const auto watched = static_cast<double>(watched_nsec_);
-  return {watched * 1e-9, watched > 0.0 ? static_cast<double>(late_nsec_) / watched : 0.0,
-          static_cast<double>(worst_nsec_) * 1e-9, stolen};
+  return {watched * 1e-9,
+          watched > 0.0 ? static_cast<double>(late_nsec_) / watched : 0.0,
+          static_cast<double>(worst_nsec_) * 1e-9,
+          stolen,
+          passed > 0.0 ? own / (passed * static_cast<double>(core_count_)) : 0.0,
+          core_count_};
 }
 
 }  // namespace cordis::machine

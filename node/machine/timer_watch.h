@@ -1,6 +1,7 @@
 // node/machine/timer_watch.h -- whether the machine keeps time while other things run.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -16,10 +17,14 @@ struct TimerFigures {
   double late_share = 0.0;             ///< timers woken later than DeadlineRecord::kLateNsec
   double worst_s = 0.0;                ///< lateness
   std::optional<double> stolen_share;  ///< share of processor time; nothing where it cannot be read
+  /// What this process and its children took, as a share of the time of the cores they may use.
+  double own_share = 0.0;
+  std::size_t core_count = 1;  ///< these cores
 };
 
-/// Samples in a thread of its own, at normal priority, how late the machine wakes timers: at 500 Hz
-/// for two seconds, then at 50 Hz. Each sample stands for the time since the one before, so that
+/// Samples in a thread of its own how late the machine wakes timers: at 500 Hz for two seconds, then
+/// at 50 Hz. Where the thread may have it, its priority is above that of the force loops: they do not
+/// delay it, nor does anything that they delay. Each sample stands for the time since the one before, so that
 /// the shares are those of the whole time. Costs less than 2 % of a core in the first two seconds
 /// and 0.1 % later.
 class TimerWatch {
@@ -41,6 +46,8 @@ class TimerWatch {
   SystemFiles files_;
   std::optional<ProcessorTime> at_begin_;
   std::int64_t begun_nsec_;
+  std::int64_t own_nsec_at_begin_;
+  std::size_t core_count_;
   mutable std::mutex mutex_;
   std::int64_t watched_nsec_ = 0;
   std::int64_t late_nsec_ = 0;

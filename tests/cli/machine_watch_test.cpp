@@ -7,7 +7,7 @@ namespace cordis::cli {
 namespace {
 
 machine::TimerFigures figures_of(double late_share, double worst_s) {
-  return {10.0, late_share, worst_s, 0.0};
+  return {10.0, late_share, worst_s, 0.0, 0.5, 2};
 }
 
 class MachineWatchTest : public testing::Test {
@@ -43,6 +43,21 @@ TEST_F(MachineWatchTest, BlamesNoMachineThatKeepsTime) {
   EXPECT_NE(watch_.sentence({5, 1}), "") << "one long stall";
   figures_ = figures_of(0.011, 0.001);
   EXPECT_NE(watch_.sentence({5, 1}), "") << "many short ones";
+}
+
+TEST_F(MachineWatchTest, BlamesNoMachineForWhatTheSessionItselfTakes) {
+  figures_.own_share = 0.97;
+  figures_.core_count = 1;
+  EXPECT_EQ(
+      watch_.sentence({5, 1}),
+      "the session itself took 97 % of the time of the 1 core that it may use: its loops wait "
+      "for each other; give it more cores, or less to compute");
+  EXPECT_EQ(watch_.sentence_when_repeated({5, 1}), watch_.sentence({5, 1}));
+}
+
+TEST_F(MachineWatchTest, WritesLongStallsInMilliseconds) {
+  figures_.worst_s = 1.0523;
+  EXPECT_NE(watch_.sentence({5, 1}).find("; worst 1052 ms"), std::string::npos);
 }
 
 TEST_F(MachineWatchTest, BlamesNoMachineForASceneThatIsTooSlow) {

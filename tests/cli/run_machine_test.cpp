@@ -27,7 +27,7 @@ TEST(RunMachine, IsNamedOnceAndAtTheEndWhenItIsTheReasonOfLateTicks) {
   EXPECT_EQ(end_of(*run), 0);
   EXPECT_EQ(count_of(run->output(), "the machine itself woke "), 2u);
   EXPECT_EQ(count_of(run->output(), "\nthe machine itself woke "), 1u) << "below the table";
-  EXPECT_EQ(count_of(run->output(), "  machine 5, device silent 1\n"), 1u)
+  EXPECT_EQ(count_of(run->output(), "  not woken 5, device silent 1\n"), 1u)
       << "once the session is being stopped no silence counts\n"
       << run->output();
 }

@@ -148,7 +148,7 @@ TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
   EXPECT_EQ(
       status_table({"sim", "keyboard", "view"}, board),
       R"(node      rate [Hz]  wanted  overruns  lost  latency p50 [us]  p99   max  energy drift  late ticks
-sim          1000.0    1000        12     0                 -    -     -       1.2e-07  machine 9, scene too slow 3, device silent 240
+sim          1000.0    1000        12     0                 -    -     -       1.2e-07  not woken 9, scene too slow 3, device silent 240
 keyboard     1000.0    1000         0     3                56   98  2310             -  none
 view      no status was received
 energy 0.0125 J: 0.03 J through the ports, -0.0005 J by changes of state, 0.017 J taken by viscosity; largest K' + 2 Z' 1.75 of 4
@@ -214,7 +214,7 @@ TEST(StatusTable, CountsNoSilenceOfANodeThatIsStopped) {
   sim.late_by_machine(1);
   board.put(sim);
 
-  EXPECT_NE(status_table({"sim"}, board).find("  machine 1, device silent 31\n"),
+  EXPECT_NE(status_table({"sim"}, board).find("  not woken 1, device silent 31\n"),
             std::string::npos);
 }
 

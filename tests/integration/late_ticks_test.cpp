@@ -103,7 +103,7 @@ TEST_F(LateTicks, OfASceneAreNotThoseInWhichItsDeviceIsSilent) {
   EXPECT_TRUE(contains(row, "device silent ")) << row;
 }
 
-TEST_F(LateTicks, OfAProcessThatWasStoppedAreTheMachines) {
+TEST_F(LateTicks, OfAProcessThatWasStoppedAreNoWorkOfItsOwn) {
   ASSERT_TRUE(both_run());
   const std::uint64_t before = status_.of("sim").late_by_machine();
 
@@ -116,7 +116,7 @@ TEST_F(LateTicks, OfAProcessThatWasStoppedAreTheMachines) {
   ASSERT_TRUE(status_.wait_for_phase("keyboard", msg::PHASE_RUNNING));
 
   const std::string sim = row_of("sim");
-  EXPECT_TRUE(contains(sim, "machine ")) << sim;
+  EXPECT_TRUE(contains(sim, "not woken ")) << sim;
   const std::string keyboard = row_of("keyboard");
   EXPECT_TRUE(contains(keyboard, "scene silent ")) << keyboard;
   EXPECT_FALSE(contains(keyboard, "device silent")) << keyboard;

@@ -1,6 +1,9 @@
 // tests/machine/machine_test.cpp -- what is measured of the machine itself.
+#include <csignal>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "node/machine/deadline_record.h"
 #include "node/machine/processor_quota.h"
@@ -139,6 +142,20 @@ TEST(TimerWatch, WatchesAsLongAsItLives) {
   }
   EXPECT_GE(figures.late_share, 0.0);
   EXPECT_LE(figures.late_share, 1.0);
+}
+
+TEST(TimerWatch, CountsWhatItsProcessAndChildrenCompute) {
+  const std::int64_t before = family_processor_nsec();
+  const pid_t child = fork();
+  if (child == 0) {
+    while (true) {
+    }
+  }
+  ASSERT_GT(child, 0);
+  while (family_processor_nsec() - before < 100'000'000) usleep(10'000);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_GE(family_processor_nsec() - before, 100'000'000) << "it still counts when it has ended";
 }
 
 }  // namespace
