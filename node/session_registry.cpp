@@ -235,6 +235,13 @@ std::vector<SessionRecord> running_sessions(const fs::path& folder) {
   return read_records(folder);
 }
 
+int domain_of_next_session(const fs::path& folder) {
+  const FolderLock lock(folder);
+  const HeldDomain held = lock_free_domain(read_records(folder));
+  close(held.file);
+  return held.domain;
+}
+
 std::string domains_text(const std::vector<SessionRecord>& sessions) {
   std::string text = sessions.size() == 1 ? "domain " : "domains ";
   for (std::size_t i = 0; i < sessions.size(); ++i) {

@@ -39,6 +39,10 @@ struct SessionRecord {
 /// @throws std::runtime_error when the folder cannot be read or locked.
 std::vector<SessionRecord> running_sessions(const std::filesystem::path& folder);
 
+/// The domain that the next session without `domain` is given, as far as it can be known before.
+/// @throws std::runtime_error as running_sessions(), or when no domain is free.
+int domain_of_next_session(const std::filesystem::path& folder);
+
 /// "domain 3", "domains 3 and 7"
 std::string domains_text(const std::vector<SessionRecord>& sessions);
 

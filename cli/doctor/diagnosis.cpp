@@ -2,6 +2,7 @@
 #include "cli/doctor/diagnosis.h"
 
 #include <ctime>
+#include <stdexcept>
 #include <thread>
 
 #include <sys/prctl.h>
@@ -16,6 +17,8 @@
 #include "cli/doctor/timer_check.h"
 #include "cli/doctor/version_check.h"
 #include "node/machine/processor_time.h"
+#include "node/runtime_folder.h"
+#include "node/session_registry.h"
 
 namespace cordis::cli {
 namespace {
@@ -38,6 +41,17 @@ Finding try_slack() {
   return check_slack(before, after);
 }
 
+/// Where the sessions cannot be known, the first one that a session tries.
+int domain_to_check(const DiagnosisOptions& options) {
+  constexpr int kFirstTried = 1;
+  if (options.domain) return *options.domain;
+  try {
+    return node::domain_of_next_session(node::runtime_folder());
+  } catch (const std::runtime_error&) {
+    return kFirstTried;
+  }
+}
+
 }  // namespace
 
 std::vector<Finding> diagnose(const machine::SystemFiles& files, const DiagnosisOptions& options) {
@@ -50,6 +64,7 @@ std::vector<Finding> diagnose(const machine::SystemFiles& files, const Diagnosis
   const auto may_use = [](const std::string& path) {
     return access(path.c_str(), R_OK | W_OK) == 0;
   };
+  const int domain = domain_to_check(options);
   return {check_versions(system.release),
           check_preemption(files, system.release, system.version),
           check_priority(permissions),
@@ -61,8 +76,8 @@ std::vector<Finding> diagnose(const machine::SystemFiles& files, const Diagnosis
           check_wakeups(wakeups, std::chrono::duration<double>(options.duration).count()),
           check_loopback(),
           check_socket_buffers(),
-          check_dds_ports(options.domain),
-          check_interface(options.interface, options.domain),
+          check_dds_ports(domain),
+          check_interface(options.interface, domain),
           check_page_port(options.page_port),
           check_devices(files, may_use)};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace cordis::cli {
 
 struct DiagnosisOptions {
   std::chrono::nanoseconds duration{std::chrono::seconds(3)};  ///< length of the measurement
-  int domain = 0;
+  std::optional<int> domain{};  ///< whose ports to check; absent: that of the next session
   int page_port = 8080;
   std::string interface {};  ///< name or address; empty: none is to be checked
 };

@@ -57,7 +57,8 @@ void add_doctor_verb(CommandLine& line) {
   Verb& verb = line.verb("doctor", "[options]",
                          "Check whether a force loop works on this machine, and what hinders it");
   verb.option("--duration", "TIME", words->duration, "How long to measure wake-ups [3s]");
-  verb.option("--domain", "NUMBER", words->domain, "The DDS domain whose ports to check [0]");
+  verb.option("--domain", "NUMBER", words->domain,
+              "The DDS domain whose ports to check [that of the next session]");
   verb.option("--interface", "NAME", words->interface,
               "Check an interface for a session on several hosts: eth0 or its address");
   verb.option("--port", "NUMBER", words->port, "The port of the page to check [8080]");

@@ -86,8 +86,10 @@ int largest_packet_of(const std::string& interface) {
   return ioctl(socket.file(), SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
 }
 
+/// Domain 0 comes last, as in a session that names none.
 std::optional<int> free_domain(int other_than) {
-  for (int domain = 0; domain <= kLargestDomain; ++domain) {
+  for (int i = 1; i <= kLargestDomain + 1; ++i) {
+    const int domain = i % (kLargestDomain + 1);
     if (domain != other_than && taken_pairs(domain) == 0) return domain;
   }
   return std::nullopt;

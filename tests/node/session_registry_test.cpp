@@ -146,6 +146,15 @@ TEST(SessionRegistry, GivesEverySessionADomainOfItsOwnAndRecordsIt) {
   EXPECT_EQ(running[1].members[0].process, two.id());
 }
 
+TEST(SessionRegistry, KnowsTheDomainThatTheNextSessionIsGiven) {
+  const Folder folder;
+  const SessionRegistration one(folder, request_of("one", "sim"));
+  const int next = domain_of_next_session(folder);
+  EXPECT_NE(next, one.domain());
+  EXPECT_NE(next, 0) << "it comes last";
+  EXPECT_EQ(running_sessions(folder).size(), 1u);
+}
+
 TEST(SessionRegistry, LetsNodesOfOneSessionMeetInItsDomain) {
   const Folder folder;
   RegisteredSession sim(folder, request_of("string", "sim"));
