@@ -6,6 +6,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "node/milliseconds.h"
+
 namespace cordis::node {
 
 RepeatedEvent::RepeatedEvent(std::string what, spdlog::level::level_enum level) noexcept
@@ -41,8 +43,8 @@ void RepeatedEvent::log_count(bool window_is_over) noexcept {
   const char* const times = count_ == 1 ? "time" : "times";
   const char* const span = window_is_over ? " in 5 s" : "";
   if (worst_s_ > 0.0) {
-    spdlog::log(level_, "{}: {} more {}{}, the worst {:.3g} ms", what_, count_, times, span,
-                1e3 * worst_s_);
+    spdlog::log(level_, "{}: {} more {}{}, the worst {}", what_, count_, times, span,
+                milliseconds_text(worst_s_));
   } else {
     spdlog::log(level_, "{}: {} more {}{}", what_, count_, times, span);
   }

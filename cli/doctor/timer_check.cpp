@@ -7,6 +7,7 @@
 
 #include "cli/run/machine_watch.h"
 #include "node/config/count_text.h"
+#include "node/milliseconds.h"
 
 namespace cordis::cli {
 namespace {
@@ -110,8 +111,8 @@ Finding check_wakeups(const std::vector<CoreWakeups>& cores, double duration_s) 
       finding.values["cores"].push_back(values_of(core.core, "realtime", *core.realtime));
   }
   const Sum sum = sum_of(cores);
-  finding.text = fmt::format("at 1 kHz for {:g} s, {:.2g} % came late, the worst by {:.3g} ms",
-                             duration_s, 100.0 * sum.late, 1e3 * sum.worst_s);
+  finding.text = fmt::format("at 1 kHz for {:g} s, {:.2g} % came late, the worst by {}", duration_s,
+                             100.0 * sum.late, node::milliseconds_text(sum.worst_s));
   finding.table = table_of(cores);
   if (sum.lost > kTooManyLost) {
     finding.level = Level::kUnusable;
