@@ -169,6 +169,24 @@ bool has_ended(pid_t pid) {
   });
 }
 
+/// The thread with the force loop: the one of SCHED_FIFO with the highest priority, or the first
+/// thread where no realtime priority is permitted, which that loop has there too.
+pid_t loop_thread_of(pid_t process) {
+  pid_t found = process;
+  int highest = 0;
+  for (const auto& task :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+    const pid_t thread = std::stoi(task.path().filename());
+    sched_param parameters{};
+    if (sched_getscheduler(thread) != SCHED_FIFO || sched_getparam(thread, &parameters) != 0 ||
+        parameters.sched_priority <= highest)
+      continue;
+    highest = parameters.sched_priority;
+    found = thread;
+  }
+  return found;
+}
+
 /// How late this machine wakes timers on any core. A thread that may run on each core is woken on
 /// the one that happens to be free.
 class CoreTimers {
@@ -242,6 +260,17 @@ class PressedKey {
     killed_nsec_ = node::monotonic_nsec();
     for (const pid_t pid : pids) EXPECT_EQ(kill(pid, signal), 0) << pid;
     all_killed_nsec_ = node::monotonic_nsec();  // this thread may have been held up in between
+  }
+
+  /// Makes the force loop of the device_node crash, while there is a force: the signal of a crash
+  /// goes to the thread that caused it. That is the one with the highest priority.
+  void crash_loop(int signal) {
+    const pid_t thread = loop_thread_of(device_);
+    timers_.emplace();
+    EXPECT_TRUE(eventually([&] { return board_->log().newest() > 0.0; }));
+    killed_nsec_ = node::monotonic_nsec();
+    EXPECT_EQ(tgkill(device_, thread, signal), 0);
+    all_killed_nsec_ = node::monotonic_nsec();
   }
 
   /// Checks that the board is given no force, and how soon. What this machine wakes timers late is
@@ -432,7 +461,7 @@ TEST(MotorRelease, ACrashLeavesNoForceEvenWithoutTheGuardian) {
     if (HasFatalFailure()) return;
     ASSERT_EQ(kill(key.guardian(), SIGSTOP), 0);
 
-    key.kill_all({key.device()}, signal);
+    key.crash_loop(signal);
 
     key.expect_zero(sigabbrev_np(signal));
     EXPECT_EQ(key.session().node("keyboard").wait(kPatience), 128 + signal) << "as it would have";
