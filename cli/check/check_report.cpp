@@ -107,6 +107,19 @@ std::string unstable_text(const SceneCheck& check) {
   return "stability   UNSTABLE at every rate_hz: take less stiffness or more mass\n";
 }
 
+/// A pair of a set takes more than the two fastest have only where many give theirs to it.
+std::string pair_share_text(const SceneCheck& check) {
+  const auto& share = check.plan.stability.pair_share;
+  if (!share) return {};
+  const scene::Called set =
+      scene::call_liaison(check.scene, plan::LiaisonId{plan::LiaisonKind::kSet, share->set});
+  return fmt::format(
+      "            a pair of {} counts with {:.3g} J, of {:.3g} J in the scene; more in one pair "
+      "is "
+      "watched\n",
+      set.name, share->energy, share->whole);
+}
+
 std::string stability_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   const double certain = check.plan.certain_step;
@@ -147,6 +160,7 @@ std::string stability_text(const SceneCheck& check) {
                                          "the energy and speeds of the start, "
                                          "\n            ";
     text += "and for a hand of 1 m/s;\n            beyond them energy is watched during the run\n";
+    text += pair_share_text(check);
   }
   text += turning_text(check);
   if (!stability.uncertainty) {

@@ -303,6 +303,7 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   }
   stability.bounded = graph.bounded;
   stability.laws_are_bounded = graph.laws_are_bounded;
+  stability.pair_share = graph.pair_share;
   stability.turning = graph.turning;
   // Elsewhere a link turns about by more than it has room for.
   if (network.dimension == 1)

@@ -30,10 +30,11 @@ struct Stability {
   StepBound certified;
   /// Beyond it the scene diverges at the pose of its start, with what acts there [s].
   double diverging_step = 0.0;
-  bool bounded = true;             ///< false: the certificate holds within a Reach alone
-  bool laws_are_bounded = true;    ///< false: likewise, as a law has no largest slope
-  double step = 0.0;               ///< step of the network [s]
-  std::vector<PartnerLimit> sets;  ///< how many partners it is stable with, one of each set
+  bool bounded = true;                  ///< false: the certificate holds within a Reach alone
+  bool laws_are_bounded = true;         ///< false: likewise, as a law has no largest slope
+  std::optional<PairShare> pair_share;  ///< LiaisonGraph::pair_share
+  double step = 0.0;                    ///< step of the network [s]
+  std::vector<PartnerLimit> sets;       ///< how many partners it is stable with, one of each set
 
   std::optional<Uncertainty> uncertainty;  ///< what keeps every step from being certain
   Turning turning;                         ///< what may gain energy below every certified step

@@ -111,7 +111,24 @@ TEST(Reach, BetweenGroupsHasTheRangeOfTheirMassesAndKnowsAPort) {
   EXPECT_EQ(reach.mass_b.high, 0.0) << "a port has none";
   EXPECT_DOUBLE_EQ(reach.inverse_mass, 1.0) << "that of the lighter one";
   EXPECT_TRUE(reach.held);
-  EXPECT_DOUBLE_EQ(reach.energy, 18.0);
+  EXPECT_DOUBLE_EQ(reach.energy, kMotion + kFall) << "no more than there is";
+}
+
+TEST(Reach, BetweenGroupsHasTheEnergyOfTwoBodiesAndAllThatLinksStore) {
+  NetworkDescription scene = two_masses();
+  scene.gravity = Vec3::Zero();
+  for (int i = 2; i < 12; ++i) {
+    scene.mats.push_back(mass(2.0, Vec3(0.3 * i, 4, 0)));
+    scene.mats[i].velocity = Vec3(3, 0, 0);
+  }
+  const auto energy_of = [&] {
+    return plan::reach_between(reach_of(scene), scene, {0, 1, 2}, {3, 4}).energy;
+  };
+  EXPECT_NEAR(energy_of(), 2.0 * kMotion, 1e-9) << "each is a body of its own";
+  scene.links.push_back({2, 3, 0.0, 1.0, 0.0});
+  EXPECT_NEAR(energy_of(), 4.0 * kMotion, 1e-9) << "a body of two";
+  scene.links.push_back({0, 1, 1000.0, 0.0, 4.9});
+  EXPECT_NEAR(energy_of(), 4.0 * kMotion + 5.0, 1e-9) << "and a spring";
 }
 
 }  // namespace

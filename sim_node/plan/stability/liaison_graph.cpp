@@ -137,6 +137,17 @@ void note(const NetworkDescription& network, const Slope& slope, LiaisonId liais
     graph.uncertainty->variables = unbounded_variables(network, liaison, graph.reach);
 }
 
+/// Precondition: the set has no largest slope.
+void record_share(std::uint32_t set, const Reach& of_scene, const SetStart& start,
+                  LiaisonGraph& graph) {
+  constexpr double kWhole = 0.99;
+  if (!start.are_balls) return;
+  const PairShare share{set, start.reach.energy, std::max(of_scene.energy, of_scene.brought)};
+  if (share.energy >= kWhole * share.whole) return;
+  const auto& least = graph.pair_share;
+  if (!least || share.energy * least->whole < least->energy * share.whole) graph.pair_share = share;
+}
+
 /// One side of a set: its touching pairs, and those beyond.
 void add_side(const NetworkDescription& network, std::uint32_t index, const Slope& slope,
               const PartnerBounds& bounds, bool of_p, LiaisonGraph& graph) {
@@ -262,6 +273,7 @@ double add_set(const NetworkDescription& network, std::uint32_t index, const Rea
       pull_jumps_where_pairs_pass(state_machine, start.rest_length, slope, start.reach))
     slope.uncertainty = "it pulls where its ends pass each other, and jumps there";
   note(network, slope, {LiaisonKind::kSet, index}, graph);
+  if (!slope.bounded) record_share(index, reach, start, graph);
   if (!graph.uncertainty &&
       !(start.all_begin_within &&
         is_confined(state_machine, start.rest_length, set.range, start.reach)) &&

@@ -30,6 +30,13 @@ struct Uncertainty {
   bool leaves_variables_free() const noexcept { return !variables.empty(); }
 };
 
+/// Lennard-Jones of a set whose pairs count with a part of the energy that there is.
+struct PairShare {
+  std::uint32_t set = 0;  ///< index in NetworkDescription::sets
+  double energy = 0.0;    ///< energy that a pair counts with [J]
+  double whole = 0.0;     ///< energy of the scene [J]
+};
+
 /// A liaison between two MATs with the largest slopes it can have.
 struct Edge {
   std::uint32_t mat_a = 0;
@@ -86,7 +93,9 @@ struct LiaisonGraph {
   bool laws_are_bounded = true;  ///< false: a law has no largest slope of its own; see Reach
   /// The liaison of surfaces with the largest Slope::passing, of more than 0.
   std::optional<LiaisonId> passable;
-  double passing = 0.0;        ///< its share of the energy that lets it through
+  double passing = 0.0;  ///< its share of the energy that lets it through
+  std::optional<PairShare>
+      pair_share;              ///< the least of all sets; none: all pairs count with the whole
   bool fed_by_forces = false;  ///< driven forces bring in energy that is not in the reach
   std::optional<Uncertainty> uncertainty;  ///< a liaison that nothing bounds
   Turning turning;

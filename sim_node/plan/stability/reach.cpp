@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
+#include <vector>
 
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/drive_extremes.h"
@@ -40,40 +42,82 @@ double weight_of(const engine::NetworkDescription& network) {
   return weight;
 }
 
-/// True if a link has a law that the energy of the scene may have to bound.
+/// True if a link or a set has a law that the energy of the scene may have to bound.
 bool needs_energy(const engine::NetworkDescription& network) {
-  return std::ranges::any_of(network.state_links, [&](const engine::StateLink& link) {
-    return std::ranges::any_of(network.state_machines[link.state_machine].states,
-                               [](const engine::LinkState& state) {
-                                 const auto is_free = [](const engine::Law& law) {
-                                   return std::holds_alternative<engine::Power>(law) ||
-                                          std::holds_alternative<engine::Expression>(law) ||
-                                          std::holds_alternative<engine::LennardJones>(law);
-                                 };
+  const auto is_free = [](const engine::Law& law) {
+    return std::holds_alternative<engine::Power>(law) ||
+           std::holds_alternative<engine::Expression>(law) ||
+           std::holds_alternative<engine::LennardJones>(law);
+  };
+  const auto needs = [&](const auto& liaison) {
+    return std::ranges::any_of(network.state_machines[liaison.state_machine].states,
+                               [&](const engine::LinkState& state) {
                                  return is_free(state.elasticity) || is_free(state.dissipation);
                                });
-  });
+  };
+  return std::ranges::any_of(network.state_links, needs) ||
+         std::ranges::any_of(network.sets, needs);
 }
 
-/// Stored by the pairs of a set at the start, and what each of its members can gain in one pair.
-double brought_by_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
-                      const Reach& reach) {
+/// The energy with which the two bodies meet that have the most, kinetic and by falling through the scene [J]. A
+/// body is what links join; what is no mass joins nothing.
+double energy_of_bodies(const engine::NetworkDescription& network) {
+  const std::size_t count = network.mats.size();
+  std::vector<std::uint32_t> body(count);
+  std::iota(body.begin(), body.end(), 0U);
+  const auto body_of = [&](std::uint32_t mat) {
+    while (body[mat] != mat) mat = body[mat] = body[body[mat]];
+    return mat;
+  };
+  const auto is_mass = [&](std::uint32_t mat) {
+    return network.mats[mat].kind == engine::MatKind::kMass;
+  };
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    if (is_mass(a) && is_mass(b)) body[body_of(a)] = body_of(b);
+  };
+  for (const engine::Link& link : network.links) join(link.mat_a, link.mat_b);
+  for (const engine::StateLink& link : network.state_links) join(link.mat_a, link.mat_b);
+  for (const engine::MaxwellLink& link : network.maxwell_links) join(link.mat_a, link.mat_b);
+  for (const engine::Bend& bend : network.bends) {
+    join(bend.mat_a, bend.mat_b);
+    join(bend.mat_b, bend.mat_c);
+  }
+  const double extent = extent_of(network);
+  std::vector<double> energy(count, 0.0);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const engine::Mat& mat = network.mats[i];
+    if (!is_mass(i)) continue;
+    energy[body_of(i)] +=
+        mat.mass * (0.5 * mat.velocity.squaredNorm() + network.gravity_on(mat).norm() * extent);
+  }
+  return 2.0 * std::ranges::max(energy);
+}
+
+/// What the pairs of a set bring in [J].
+struct BroughtBySet {
+  double stored = 0.0;  // at the start
+  double fall = 0.0;    // what its members can gain, each in one pair
+};
+
+BroughtBySet brought_by_set(const engine::NetworkDescription& network,
+                            const engine::SetLiaison& set, const Reach& reach) {
   const StartPairs near(network, set);
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const Reach of_masses =
       reach_between(reach, network, set.set_p, set.set_q.empty() ? set.set_p : set.set_q);
-  double energy = 0.0;
+  BroughtBySet brought;
   double nearest = set.range;
   double rest = std::max(set.rest_length, 0.0);
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint point = start_point(network, set, pair);
-    energy += max_stored_in(state_machine, point, of_masses);
+    brought.stored += max_stored_in(state_machine, point, of_masses);
     nearest = std::min(nearest, pair.distance);
     rest = point.distance - point.elongation;
   }
   const double fall = brought_by_pair(network, set, nearest, rest, of_masses);
-  if (!std::isfinite(fall)) return energy;
-  return energy + fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+  if (std::isfinite(fall))
+    brought.fall = fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+  return brought;
 }
 
 /// Stored at the start by the springs of friction [J].
@@ -88,13 +132,10 @@ double stored_by_friction(const engine::NetworkDescription& network,
   return energy;
 }
 
-/// Kinetic, stored and what falling through the scene brings, of all but links with states [J].
+/// Stored by all but links with states and pairs of sets [J].
 /// @param reach  its variables alone
-double energy_brought(const engine::NetworkDescription& network, const Reach& reach) {
+double stored_at_start(const engine::NetworkDescription& network, const Reach& reach) {
   double energy = 0.0;
-  for (const engine::Mat& mat : network.mats) {
-    if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
-  }
   for (const engine::Link& link : network.links) {
     const double e = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
     energy += 0.5 * link.stiffness * e * e;
@@ -113,9 +154,14 @@ double energy_brought(const engine::NetworkDescription& network, const Reach& re
         (bend.has_states() ? std::max(4.0, w * w) : w * w);  // a change may fold it the other way
   }
   for (const engine::SetLiaison& set : network.sets) energy += stored_by_friction(network, set);
-  if (needs_energy(network)) {
-    for (const engine::SetLiaison& set : network.sets)
-      energy += brought_by_set(network, set, reach);
+  return energy;
+}
+
+/// Kinetic, and what falling through the scene brings [J].
+double energy_brought(const engine::NetworkDescription& network) {
+  double energy = 0.0;
+  for (const engine::Mat& mat : network.mats) {
+    if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
   }
   return energy + weight_of(network) * extent_of(network);
 }
@@ -253,7 +299,8 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
       ranges.push_back(range_of_variable(network, variable));
     reach.variables = std::make_shared<const std::vector<Interval>>(std::move(ranges));
   }
-  double energy = energy_brought(network, reach);
+  const Reach of_variables = reach;
+  double stored = stored_at_start(network, of_variables);
   reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
   std::uint32_t index = 0;
   BroughtByLinks known;
@@ -265,7 +312,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     if (feeds && !reach.fed) reach.fed = engine::LiaisonId{LiaisonKind::kStateLink, index};
     const double brought = feeds ? 0.0 : known.brought(network, link);
     if (std::isfinite(brought)) {
-      energy += brought;
+      stored += brought;
     } else if (!reach.endless) {
       reach.endless = index;
     }
@@ -284,8 +331,16 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.driven = driven;
   reach.pushed = factor * driven * extent_of(network);
   reach.force = driven + weight_of(network);
-  reach.brought = factor * energy + reach.pushed;
+  reach.stored = factor * stored + reach.pushed;
+  reach.brought = factor * energy_brought(network) + reach.stored;
+  reach.of_bodies = factor * energy_of_bodies(network);
   reach.counts_sets = needs_energy(network);
+  for (const engine::SetLiaison& set : network.sets) {
+    if (!reach.counts_sets) break;
+    const BroughtBySet brought = brought_by_set(network, set, of_variables);
+    reach.in_pairs += factor * brought.stored;
+    reach.brought += factor * (brought.stored + brought.fall);
+  }
   reach.energy *= factor;
   reach.speed *= std::sqrt(factor);
   return reach;
@@ -310,6 +365,8 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
   };
   if (mats_a.size() == 1 && mats_b.size() == 1) {
     reach.energy = std::max(reach.energy, reach.brought);
+  } else {
+    reach.energy = std::max(reach.energy, std::min(reach.of_bodies + reach.stored, reach.brought));
   }
   reach.mass_a = masses(mats_a);
   reach.mass_b = masses(mats_b);

@@ -20,7 +20,12 @@ struct Reach {
   double energy = 0.0;      ///< energy with which two MATs approach each other, ports apart [J]
   /// Kinetic and stored at the start, by falling, by laws whose potential falls, and by `pushed` [J].
   double brought = 0.0;
-  double pushed = 0.0;   ///< by driven forces through the scene [J]
+  double pushed = 0.0;  ///< by driven forces through the scene [J]
+  /// The part of `brought` that one pair may get all of: what liaisons other than sets store, and `pushed` [J].
+  double stored = 0.0;
+  double in_pairs = 0.0;  ///< the part that the pairs of sets store [J]; 0 unless `counts_sets`
+  /// The energy with which two bodies meet, of masses that links join: kinetic and by falling [J].
+  double of_bodies = 0.0;
   Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
   bool counts_sets = false;   ///< what sets store at the start is in `brought`
@@ -52,7 +57,8 @@ Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
 Interval range_of_variable(const engine::NetworkDescription& network,
                            const engine::Variable& variable);
 
-/// The reach of a liaison between one of some MATs and one of others.
+/// The reach of a liaison between one of some MATs and one of others. A pair of single MATs may get all the energy
+/// there is; one of many that of two bodies and all that is stored, but no more than there is.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,
                     const std::vector<std::uint32_t>& mats_a,
                     const std::vector<std::uint32_t>& mats_b);

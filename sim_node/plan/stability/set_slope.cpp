@@ -116,16 +116,23 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   }
   if (near.at_one_point()) start.uncertainty = starts_at_one_point(state_machine, {});
   const auto& law = state_machine.states[state_machine.start].elasticity;
-  const bool are_balls = std::holds_alternative<engine::LennardJones>(law);
-  start.fall = are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);
-  here.energy += most;
-  here.brought += most + (std::isfinite(start.fall) ? start.fall : 0.0);
+  start.are_balls = std::holds_alternative<engine::LennardJones>(law);
+  start.fall =
+      start.are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);
+  if (reach.counts_sets) {
+    const double all = std::max(reach.energy, reach.brought);
+    here.energy += most + std::max(reach.in_pairs - start.stored, 0.0);
+    if (near.are_kept()) here.energy = std::min(here.energy, all);
+  } else {
+    here.energy += most;
+    here.brought += most + (std::isfinite(start.fall) ? start.fall : 0.0);
+  }
   here.range = set.range;
   start.is_known = near.are_kept();
   const std::size_t count_p = set.set_p.size();
-  const std::size_t all =
+  const std::size_t pair_count =
       set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
-  start.all_begin_within = near.are_kept() && near.pairs().size() == all;
+  start.all_begin_within = near.are_kept() && near.pairs().size() == pair_count;
   return start;
 }
 

@@ -15,9 +15,10 @@ struct SetStart {
   Reach reach;               ///< reach of its pairs, with what the pair stores that stores the most
   double rest_length = 0.0;  ///< the least of a pair [m]
   double across = 0.0;       ///< the largest stiffness across a pair at the start [N/m]
-  double fall = 0.0;     ///< what the potential of a pair may fall by; infinite without an end [J]
-  double stored = 0.0;   ///< by all pairs [J]
-  bool is_known = true;  ///< false: the pairs are too many to look at
+  double fall = 0.0;    ///< what the potential of a pair may fall by; infinite without an end [J]
+  double stored = 0.0;  ///< by all pairs [J]
+  bool are_balls = false;             ///< Lennard-Jones in the state of the start
+  bool is_known = true;               ///< false: the pairs are too many to look at
   bool all_begin_within = false;      ///< every pair is within range
   const char* uncertainty = nullptr;  ///< why a pair keeps every step from being certain
 };
