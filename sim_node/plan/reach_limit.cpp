@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -20,21 +21,25 @@ namespace {
 
 using engine::NetworkDescription;
 
+/// True if K' + 2 Z' is below 4. Precondition: the integrator is not `modal`.
+bool is_stable(const NetworkDescription& network, const LiaisonGraph& graph) {
+  return network.step < certified_bound(network, graph).step;
+}
+
 bool is_certified(const NetworkDescription& network, const LiaisonGraph& graph) {
   if (network.integrator == engine::IntegratorKind::kModal)
     return stability_of(network, graph).holds();
-  return !uncertainty_of(network, graph) && network.step < certified_bound(network, graph).step;
+  return !uncertainty_of(network, graph) && is_stable(network, graph);
 }
 
 /// The largest factor of an energy, at least 1 and to `finest` of it, up to which `holds` is true. The last factor
 /// for which it was true is the one found.
 template <class Holds>
-double largest_factor(const Holds& holds, double finest) {
+double largest_factor(const Holds& holds, double finest, double largest = 1e6) {
   constexpr double kStep = 4.0;
-  constexpr double kLargest = 1e6;
   double low = 1.0;
-  while (low < kLargest && holds(kStep * low)) low *= kStep;
-  double high = low < kLargest ? kStep * low : low;
+  while (low < largest && holds(kStep * low)) low *= kStep;
+  double high = low < largest ? kStep * low : low;
   while (high > finest * low) {
     const double middle = std::sqrt(low * high);
     (holds(middle) ? low : high) = middle;
@@ -92,7 +97,7 @@ double deepest_well(const engine::StateMachine& state_machine) {
   return depth;
 }
 
-/// The energies of the pairs of sets of balls, raised as far as the step of a graph is certified.
+/// The energies of the pairs of sets of balls, from that of the start or from that of their wells.
 class PairEnergies {
  public:
   PairEnergies(const NetworkDescription& network, const LiaisonGraph& graph)
@@ -108,24 +113,39 @@ class PairEnergies {
     }
   }
 
-  /// All together, then one after the other; of too many all together alone.
+  /// Raised from the wells as far as the step is stable, all together; none where it is not stable there.
+  std::vector<PairLimit> find_stable() {
+    constexpr double kLargest = 1e12;
+    for (std::size_t k = 0; k < limits_.size(); ++k) {
+      const engine::SetLiaison& set = network_.sets[limits_[k].set];
+      set_energy(k, deepest_well(network_.state_machines[set.state_machine]));
+    }
+    if (limits_.empty() || !is_stable(network_, graph_)) return {};
+    std::vector<std::size_t> all(limits_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    raise(all, is_stable, kLargest);
+    return limits_;
+  }
+
+  /// Raised as far as the step is certified. All together, then one after the other; of too many all together alone.
   const std::vector<PairLimit>& find() {
     constexpr double kWork = 1e6;  // sets times what a bound goes through
     std::vector<std::size_t> all;
     for (std::size_t k = 0; k < limits_.size(); ++k) all.push_back(k);
     if (all.empty()) return limits_;
-    raise(all);
+    raise(all, is_certified);
     if (all.size() == 1) return limits_;
     double size = static_cast<double>(graph_.edges.size() + graph_.inverse_mass.size());
     for (const ContactBound& contact : graph_.contacts)
       size += static_cast<double>(contact.members.size());
     if (size * static_cast<double>(all.size()) > kWork) return limits_;
-    for (const std::size_t k : all) raise({k});
+    for (const std::size_t k : all) raise({k}, is_certified);
     return limits_;
   }
 
  private:
-  void raise(const std::vector<std::size_t>& group) {
+  template <class Holds>
+  void raise(const std::vector<std::size_t>& group, const Holds& holds, double largest = 1e6) {
     constexpr double kFinest = 1.05;
     const std::vector<PairLimit> before = limits_;
     const auto raise_by = [&](double factor) {
@@ -134,9 +154,9 @@ class PairEnergies {
     raise_by(largest_factor(
         [&](double factor) {
           raise_by(factor);
-          return is_certified(network_, graph_);
+          return holds(network_, graph_);
         },
-        kFinest));
+        kFinest, largest));
   }
 
   void set_energy(std::size_t k, double energy) {
@@ -322,6 +342,18 @@ ReachLimit reach_limit(const NetworkDescription& network) {
     before = &limit.with_more_partners.back().partners;
   }
   return limit;
+}
+
+std::vector<PairLimit> stable_pairs(const NetworkDescription& network) {
+  bool has_balls = false;
+  for (const engine::SetLiaison& set : network.sets) {
+    const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+    if (!is_of_balls(state_machine)) continue;
+    has_balls = true;
+    if (engine::laws_ask_for_variable(state_machine)) return {};
+  }
+  if (!has_balls || network.integrator == engine::IntegratorKind::kModal) return {};
+  return PairEnergies(network, liaison_graph(network)).find_stable();
 }
 
 double pair_energy(const engine::World& world, const engine::SetLiaison& set) noexcept {

@@ -50,6 +50,11 @@ struct ReachLimit {
 /// slope, and where the step is not certified. O(liaisons), and O(liaisons) for each set.
 ReachLimit reach_limit(const engine::NetworkDescription& network);
 
+/// For each set where Lennard-Jones alone has no largest slope, the energy of a pair at which K' + 2 Z' comes to 4
+/// with the partners that the certificate needs, to 5 %. None where it is at 4 in the wells, and where the depth of a
+/// well follows variables. O(liaisons).
+std::vector<PairLimit> stable_pairs(const engine::NetworkDescription& network);
+
 /// The most energy that the motion of two MATs of a set against each other has [J]. Of any two it is at
 /// most their kinetic energy, and half the reduced mass times the sum of their speeds squared. Ports have
 /// no kinetic energy. Real time: O(members), no allocation.

@@ -86,6 +86,7 @@ Simulation::Simulation(std::shared_ptr<const scene::Scene> scene, std::uint64_t 
       world_(std::make_shared<const engine::Network>(
           std::shared_ptr<const engine::NetworkDescription>(scene_, &scene_->network))),
       partners_(scene_->network),
+      pairs_(scene_->network),
       devices_(exchanges_of(*scene_, epoch)),
       division_(scene_->step_rate_hz, scene_->gesture_rate_hz) {
   if (!scene_->start_state || misses_start_state()) return;
@@ -137,6 +138,8 @@ bool Simulation::advance(int steps, EventRoom& events, StepRows* rows) noexcept 
     kinetic_.update(world_);
     partners_.update(world_);
     if (partners_.is_passed()) let_devices_go(PassedBound::kPartners);
+    pairs_.update(world_);
+    if (pairs_.is_passed()) let_devices_go(PassedBound::kNumber);
     troubles_.overflowed_steps += report.overflowed_sets > 0 ? 1U : 0U;
     troubles_.forgotten_pairs += report.forgotten_pairs;
     troubles_.refused_inputs +=

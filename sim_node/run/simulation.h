@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim_node/checks/pair_watch.h"
 #include "sim_node/checks/partner_watch.h"
 #include "sim_node/devices/device_exchange.h"
 #include "sim_node/engine/world.h"
@@ -107,7 +108,7 @@ class Simulation {
   void keep_devices() noexcept { keeps_devices_ = true; }
   /// Lets go of all devices until the scene restarts or another one is loaded: they feel no force,
   /// and their MATs hold still. The first reason stays. Partners beyond what is certified do so in
-  /// the step in which they come. Does nothing after keep_devices().
+  /// the step in which they come, and two members of a set before they meet too hard for the step. Does nothing after keep_devices().
   void let_devices_go(PassedBound bound) noexcept;
   /// Why the devices were let go of.
   PassedBound passed_bound() const noexcept { return passed_bound_; }
@@ -125,6 +126,7 @@ class Simulation {
   std::shared_ptr<const scene::Scene> scene_;
   engine::World world_;
   PartnerWatch partners_;
+  PairWatch pairs_;
   KineticWatch kinetic_;
   StepTroubles troubles_;
   std::vector<DeviceExchange> devices_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/plan/plan.h"
+#include "sim_node/run/bound_text.h"
 #include "tests/sim/loaded_scenes.h"
 #include "tests/support/watched_scenes.h"
 
@@ -114,6 +115,32 @@ TEST(SetEnergy, IsThatOfASinglePairAtLeastWithMoreMembers) {
   std::string single = at_rate(kShot, "20000");
   single.replace(single.find("[[1.0], [1.5]]"), 14, "[[1.0]]");
   EXPECT_LT(certain_step(at_rate(kShot, "20000")), 1.001 * certain_step(single));
+}
+
+/// The shot has its energy before it meets a target.
+TEST(SetEnergy, LetsGoBeforeABallMeetsASetTooFast) {
+  for (const char* const rate : {"2000", "5000"}) {
+    const auto loaded = loaded_scene_of(at_rate(kShot, rate));
+    Simulation& simulation = loaded->simulation;
+    const double start = simulation.world().energy().total();
+    EventRoom events(64);
+    while (simulation.passed_bound() == PassedBound::kNone && simulation.simulated_s() < 0.1)
+      simulation.advance(1, events);
+    EXPECT_EQ(simulation.passed_bound(), PassedBound::kNumber) << rate;
+    EXPECT_LT(simulation.world().energy().total(), 1.1 * start) << "in time";
+    EXPECT_NE(bound_text(*loaded).find("K' + 2 Z' came to 4"), std::string::npos);
+  }
+}
+
+TEST(SetEnergy, LetsNothingGoWhereTheStepBearsIt) {
+  for (const std::string& text : {at_rate(kShot, "30000"), at_rate(kDrop, "10000")}) {
+    const auto loaded = loaded_scene_of(text);
+    EventRoom events(64);
+    while (loaded->simulation.simulated_s() < 3.5 && !loaded->simulation.failed())
+      loaded->simulation.advance(1, events);
+    EXPECT_FALSE(loaded->simulation.failed());
+    EXPECT_EQ(loaded->simulation.passed_bound(), PassedBound::kNone);
+  }
 }
 
 /// Atoms that nothing else moves: the motion of the two fastest counts, not that of all in one pair.
