@@ -69,6 +69,7 @@ std::vector<Drawn> drawn_of_matter() {
       {"a fixed lattice", {"  still: ", "kind: lattice", "fixed: true"}},
       {"a fixed beam", {"  still: ", "kind: beam", "fixed: true"}},
       {"a fixed pack", {"  still: ", "kind: pack", "fixed: true"}},
+      {"a ball that is shot at a set", {"liaison: of_targets, between_sets"}},
       {"a fixed body that is touched", {"liaison: of_obstacle, between_sets"}},
   };
 }

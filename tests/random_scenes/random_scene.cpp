@@ -47,7 +47,8 @@ class SceneWriter {
         leads_(seed ^ 0x510e527fU),
         asking_(seed ^ 0x9b05688cU),
         links_asked_(seed ^ 0x1f83d9abU),
-        obstacles_(seed ^ 0x5be0cd19U) {
+        obstacles_(seed ^ 0x5be0cd19U),
+        shots_(seed ^ 0x367cd507U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -72,6 +73,7 @@ class SceneWriter {
     if (matter_ == Matter::kAnything) perhaps_add_changing_link();
     if (matter_ == Matter::kAnything) perhaps_add_formulas();
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_crowd();
+    if (matter_ == Matter::kAnything && !freezes_) perhaps_add_shot();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
     if (matter_ != Matter::kPotentials) perhaps_lead_a_mass();
@@ -1027,6 +1029,40 @@ step: {{rate_hz: {}, integrator: {}{}}}
         "  - {{liaison: of_crowd, within: crowd, rest_m: {:.4g}, range_m: 100}}\n", rest);
   }
 
+  /// In a twentieth of the scenes a pressed spring shoots a ball at some of Lennard-Jones, light or heavy.
+  void perhaps_add_shot() {
+    if (!shots_.chance(0.05)) return;
+    const double size = shots_.decades(0.05, 1.0);
+    const double energy = shots_.decades(1e-3, 10.0);
+    const auto place_at = [&](double place) {
+      return fmt::format("[{:.5g}{}]", size * place,
+                         space_ == 1   ? ""
+                         : space_ == 2 ? ", 0"
+                                       : ", 0, 0");
+    };
+    std::string targets = place_at(0.5);
+    const std::uint32_t more = shots_.below(3);
+    for (std::uint32_t i = 0; i < more; ++i) targets += ", " + place_at(0.62 + 0.12 * i);
+    masses_ += fmt::format("  butt: {{kind: fixed, at_m: {}}}\n", place_at(-0.8));
+    masses_ += fmt::format("  shot: {{kind: points, mass_kg: {:.4g}, at_m: [{}]}}\n",
+                           shots_.decades(1e-3, 0.1), place_at(0.0));
+    masses_ += fmt::format("  targets: {{kind: points, mass_kg: {:.4g}, at_m: [{}]}}\n",
+                           shots_.decades(1e-3, 10.0), targets);
+    const double pressed = 0.2 * size;
+    liaisons_ +=
+        fmt::format("  of_shot: {{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}\n",
+                    2.0 * energy / (pressed * pressed));
+    liaisons_ += fmt::format(
+        "  of_targets: {{elasticity: {{kind: lennard_jones, depth_j: {:.4g}, diameter_m: {:.4g}, "
+        "cut_m: {:.4g}}}}}\n",
+        energy * shots_.decades(1e-4, 1e-1), 0.1 * size, 0.25 * size);
+    links_ += fmt::format(
+        "  - {{liaison: of_shot, between: [butt, \"shot[0]\"], rest_m: {:.5g}}}\n", size);
+    links_ +=
+        fmt::format("  - {{liaison: of_targets, between_sets: [shot, targets], range_m: {:.4g}}}\n",
+                    0.25 * size);
+  }
+
   double body_between(double low, double high) {
     return low + (high - low) * static_cast<double>(random_of_bodies_()) / 4294967296.0;
   }
@@ -1457,6 +1493,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
   RandomNumbers asking_;       // fields that ask for signals
   RandomNumbers links_asked_;  // by conditions
   RandomNumbers obstacles_;
+  RandomNumbers shots_;
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses

@@ -442,7 +442,8 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   sim::PartnerWatch partners(network);
   TurnWatch turns(network);
   const plan::ReachLimit reach = plan::reach_limit(network);
-  const double turns_from = stability_of(network).turning.energy;  // watched, not certified
+  const plan::Stability stability = stability_of(network);
+  const double turns_from = stability.turning.energy;  // watched, not certified
   // A hand that pushes 0.05 kg for one step.
   const double push = 0.1 * network.step;
   const double chatter = chatter_of(network);
@@ -486,6 +487,16 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
     if (foreseen > kSpare * std::max(reach.energy, start)) {
       run.growth = "laws have brought in " + std::to_string(foreseen / reach.energy) +
                    " times the energy of the reach at step " + std::to_string(n);
+      return run;
+    }
+    // Where a pair counts with all the energy there is.
+    for (const plan::PairLimit& pair : reach.pairs) {
+      if (stability.pair_share) break;
+      const double unforeseen = whole - std::max(foreseen, 0.0);
+      const double of_pair = plan::pair_energy(world, network.sets[pair.set]) - unforeseen;
+      if (!(of_pair > kSpare * pair.energy)) continue;
+      run.growth = "laws have brought " + std::to_string(of_pair / pair.energy) +
+                   " times the energy of its reach to a pair at step " + std::to_string(n);
       return run;
     }
     const bool is_beyond = plan::is_beyond(reach, world, energy);
