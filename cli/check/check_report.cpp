@@ -91,6 +91,17 @@ std::string turning_text(const SceneCheck& check) {
       turning.energy);
 }
 
+/// What gains energy little by little at a certified step.
+std::string bending_text(const SceneCheck& check) {
+  const plan::Stability& stability = check.plan.stability;
+  if (!stability.bending || !stability.holds()) return {};
+  const scene::Called law = scene::call_liaison(check.scene, stability.bending);
+  return fmt::format(
+      "            what passages over the bend of {}{} gain may add up without\n"
+      "            viscosity; energy is watched during the run\n",
+      law.name, location(law));
+}
+
 /// Where the step is surely unstable: from which rate on it is not.
 std::string unstable_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
@@ -162,7 +173,7 @@ std::string stability_text(const SceneCheck& check) {
     text += "and for a hand of 1 m/s;\n            beyond them energy is watched during the run\n";
     text += pair_share_text(check);
   }
-  text += turning_text(check);
+  text += turning_text(check) + bending_text(check);
   if (!stability.uncertainty) {
     for (const plan::PartnerLimit& set : stability.sets) text += partners_text(check, set);
   }

@@ -276,6 +276,12 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         varying->liaison,
         "each passage over its bend may gain energy, for its K' varies by more than 1"};
   }
+  const std::optional<VaryingSlope> falling = falling_slope_of(network, graph);
+  if (falling && falling->stiffness > kCertainFall) {
+    return Uncertainty{
+        falling->liaison,
+        "each passage over its bend may gain energy, for its K' falls by more than 0.1"};
+  }
   constexpr double kMaxNumber = 4.0;  // K' of any vibration
   constexpr double kCertainBesideAll = certain_beside(kMaxNumber) / kMaxNumber;
   if (std::max(touch, variation) <= kCertainBesideAll) return {};
@@ -309,6 +315,9 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   if (network.dimension == 1)
     stability.turning.swing(swing_of(network.integrator, network.step / stability.certified.step));
   stability.step = network.step;
+  constexpr double kNegligibleFall = 0.01;  // K'
+  const auto bending = falling_slope_of(network, graph, /*anywhere=*/true);
+  if (bending && bending->stiffness > kNegligibleFall) stability.bending = bending->liaison;
   stability.sets = partner_limits(network, graph, stability.holds());
   stability.uncertainty = uncertainty_of(network, graph);
   // The two limits are found in ways that have nothing in common: where they cross one is wrong.
@@ -546,8 +555,13 @@ std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& ne
   return worst_contact_among(network, graph, /*clamped=*/false);
 }
 
-std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& network,
-                                             const LiaisonGraph& graph) {
+namespace {
+
+/// The largest of what a number [N/m] of each liaison comes to for its masses.
+/// @param number  that of an edge, of a contact, or of a force
+template <class Number>
+std::optional<VaryingSlope> largest_slope_among(const engine::NetworkDescription& network,
+                                                const LiaisonGraph& graph, const Number& number) {
   const double weight = limit_weights(network, Limit::kStable).stiffness;
   std::optional<VaryingSlope> most;
   const auto consider = [&](LiaisonId liaison, double variation, double inverse_mass) {
@@ -555,16 +569,30 @@ std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& n
     if (stiffness > (most ? most->stiffness : 0.0)) most = {liaison, stiffness};
   };
   for (const Edge& edge : graph.edges) {
-    consider(edge.liaison, edge.variation,
+    consider(edge.liaison, number(edge),
              graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
   }
   for (const ContactBound& contact : graph.contacts) {
-    consider({LiaisonKind::kSet, contact.set}, contact.variation,
+    consider({LiaisonKind::kSet, contact.set}, number(contact),
              lightest(graph, contact.members) + lightest(graph, contact.others));
   }
   for (const ForceBound& force : graph.forces)
-    consider(force.liaison, force.variation, graph.inverse_mass[force.mat]);
+    consider(force.liaison, number(force), graph.inverse_mass[force.mat]);
   return most;
+}
+
+}  // namespace
+
+std::optional<VaryingSlope> varying_slope_of(const engine::NetworkDescription& network,
+                                             const LiaisonGraph& graph) {
+  return largest_slope_among(network, graph, [](const auto& each) { return each.variation; });
+}
+
+std::optional<VaryingSlope> falling_slope_of(const engine::NetworkDescription& network,
+                                             const LiaisonGraph& graph, bool anywhere) {
+  return largest_slope_among(network, graph, [anywhere](const auto& each) {
+    return anywhere ? each.fall_anywhere : each.fall;
+  });
 }
 
 double stiffest_vibration(const engine::NetworkDescription& network, LiaisonGraph graph) {

@@ -13,15 +13,19 @@
 namespace cordis::plan {
 namespace {
 
-/// A rate at which it is certain that the network is stable, from this one on to four times that: a shorter step
+constexpr const char* kOfBends = "the energy that bends and contacts may gain";
+
+/// A rate at which it is certain that the network is stable, from this one on to eight times that: a shorter step
 /// makes the K' of a bend smaller. This one itself where none is.
 double certain_rate(engine::NetworkDescription network, double rate_hz, double gesture_rate_hz) {
-  const auto is_certain = [&network](double rate) {
+  constexpr double kMaxTimes = 8.0;
+  const LiaisonGraph graph = liaison_graph(network);
+  const auto is_certain = [&](double rate) {
     network.step = 1.0 / rate;
-    return !uncertainty_of(network, liaison_graph(network));
+    return !uncertainty_of(network, graph);
   };
   double low = std::round(rate_hz / gesture_rate_hz);  // in gesture rates, as the next
-  double high = 4.0 * low;
+  double high = kMaxTimes * low;
   if (is_certain(rate_hz) || !is_certain(high * gesture_rate_hz)) return rate_hz;
   while (high - low > 1.0) {
     const double middle = std::floor(0.5 * (low + high));
@@ -37,6 +41,11 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   RateSelection selection{integrator, formula.rate_hz, formula.needed_hz,
                           to_string(formula.reason)};
   if (target.over_s == 0.0) {
+    const double certain_hz = certain_rate(network, formula.rate_hz, gesture_rate_hz);
+    if (certain_hz > formula.rate_hz && certain_hz <= target.highest_hz) {
+      selection.rate_hz = selection.needed_hz = certain_hz;
+      selection.because = kOfBends;
+    }
     const std::optional<Uncertainty> uncertainty = uncertainty_of(network, liaison_graph(network));
     if (uncertainty && uncertainty->leaves_variables_free()) {
       selection.uncertainty = "pitch and decay are those without what signals bring in";
@@ -74,8 +83,7 @@ RateSelection select_for(engine::NetworkDescription network, const AccuracyTarge
   if (trial.rate_hz > lowest_hz) {
     selection.because = "the positions, as tried out";
   } else {
-    selection.because = lowest_hz > floor.rate_hz ? "the stability beside a stiff vibration"
-                                                  : to_string(floor.reason);
+    selection.because = lowest_hz > floor.rate_hz ? kOfBends : to_string(floor.reason);
   }
   return selection;
 }

@@ -34,7 +34,8 @@ double cost_of_a_step(engine::NetworkDescription network, const RateSelection& s
 /// The cheapest of the integrators for what is asked. By the formulas of rate_by_formula; with over_s,
 /// a network that moves by itself is tried out (find_rate), within the limits of stability and of
 /// contacts. One whose ports are played is not: the gesture is unknown beforehand. No rate is tried at
-/// which its stability is not certain, if up to four times the rate of the limits there is a certain one.
+/// which its stability is not certain, if up to eight times the rate of the limits there is a certain one.
+/// So it is without over_s.
 /// Where there is none the rate of the formulas stays. That may be above the highest rate of the target,
 /// where no integrator has a lower one.
 /// @param integrators  by name, at least one

@@ -167,6 +167,7 @@ class PairEnergies {
       contact.stiffness = slope.stiffness;
       contact.viscosity = slope.viscosity;
       contact.variation = slope.variation;
+      contact.fall = slope.fall;
     }
   }
 

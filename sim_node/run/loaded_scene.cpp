@@ -71,7 +71,7 @@ LoadedScene::LoadedScene(const std::shared_ptr<const scene::Scene>& scene,
       changes(simulation.scene().network.state_machines),
       limits(simulation.scene().network),
       is_certain(stability.holds()),
-      may_turn(std::isfinite(stability.turning.energy)),
+      may_gain(std::isfinite(stability.turning.energy) || stability.bending),
       reach(is_certain ? plan::reach_limit(simulation.scene().network) : plan::ReachLimit{}),
       watches_number(!is_certain && number_of_start(limits, simulation.world()) < 4.0),
       shadow(std::make_shared<ShadowWorld>(simulation.world().shared_network(), reach)),
@@ -79,7 +79,7 @@ LoadedScene::LoadedScene(const std::shared_ptr<const scene::Scene>& scene,
 
 PassedBound LoadedScene::passed_bound(const BoundSigns& signs) noexcept {
   is_beyond_reach = is_beyond_reach || signs.is_beyond_reach;
-  if (is_certain && !may_turn && !is_beyond_reach) return PassedBound::kNone;
+  if (is_certain && !may_gain && !is_beyond_reach) return PassedBound::kNone;
   if (watches_number) {
     constexpr double kLimit = 4.0;
     limits.update(simulation.world());

@@ -26,7 +26,7 @@ struct LoadedScene {
               std::uint64_t epoch, std::uint64_t version);
 
   /// True if the run of this scene needs its energy.
-  bool watches_energy() const noexcept { return !is_certain || may_turn || !reach.is_infinite(); }
+  bool watches_energy() const noexcept { return !is_certain || may_gain || !reach.is_infinite(); }
 
   /// The energy of now, and the largest so far. Real time: O(MATs + links + pairs), no allocation.
   engine::Energy sample_energy() noexcept {
@@ -36,7 +36,7 @@ struct LoadedScene {
 
   /// The bound beyond which a scene that is not certain lets go of its devices, if K' + 2 Z' or its
   /// energy passes it now. A scene that is certified within a reach is certain until it goes beyond
-  /// it, once and for all. The energy of links that may turn about is watched from the start on. What is
+  /// it, once and for all. The energy of links that may turn about, and of bends, is watched from the start on. What is
   /// certified ends with the partners too, which the simulation watches itself. Real time.
   /// @param signs  of a moment of this scene
   PassedBound passed_bound(const BoundSigns& signs) noexcept;
@@ -46,9 +46,9 @@ struct LoadedScene {
   StepRows step_rows;  ///< rows of the present turn
   ChangeCounter changes;
   LimitWatch limits;
-  EnergyWatch energy;            ///< largest energy in the eyes of the loop
-  bool is_certain;               ///< the step is certified
-  bool may_turn;                 ///< enough energy turns a link about: plan::Turning
+  EnergyWatch energy;  ///< largest energy in the eyes of the loop
+  bool is_certain;     ///< the step is certified
+  bool may_gain;       ///< enough energy turns a link about, or bends gain some: plan::Stability
   plan::ReachLimit reach;        ///< within which it is certain; infinite where it is not certain
   bool is_beyond_reach = false;  ///< it has gone beyond its reach
   bool watches_number;  ///< K' + 2 Z' is below 4 at the start, and the step is not certified

@@ -220,9 +220,37 @@ TEST(Plan, IsNotCertainOfALawThatBendsTooSharplyForItsStep) {
   ASSERT_TRUE(sharp.uncertainty.has_value());
   EXPECT_EQ(sharp.uncertainty->liaison.index, 0u);
   EXPECT_GT(growth(2000.0), 3.0);
-  EXPECT_TRUE(plan_of(scene_at(900.0, 0.3), 10.0).stability.holds());
+  EXPECT_FALSE(plan_of(scene_at(790.0, 0.3), 10.0).stability.holds());
+  EXPECT_GT(growth(790.0), 1.0);
+  EXPECT_TRUE(plan_of(scene_at(99.0, 0.3), 10.0).stability.holds());
+  EXPECT_LT(growth(99.0), 0.6);
   EXPECT_TRUE(plan_of(scene_at(20.0, 0.3), 10.0).stability.holds());
   EXPECT_LT(growth(20.0), 0.2);
+}
+
+TEST(Plan, IsCertainOfABendThatTheEnergyOfTheStartDoesNotReach) {
+  // K' = 0.5 with a force limit, of 1 kg: what a hand may bring in stores up to 1 N m, at 2 mm.
+  const auto stability_with = [](double limit) {
+    StateMachine law = state_machine(5e5);
+    law.states[0].force_limit = limit;
+    return plan_of(mass_on_law(1, 1.0, Vec3(1e-3, 0, 0), Vec3::Zero(), law, 0.0), 10.0).stability;
+  };
+  const plan::Stability far = stability_with(1e4);
+  EXPECT_TRUE(far.holds());
+  EXPECT_TRUE(far.bending.has_value()) << "it is watched";
+  EXPECT_FALSE(stability_with(500.0).holds());
+}
+
+TEST(Plan, IsCertainOfALawThatOnlyBecomesStiffer) {
+  const auto holds = [](const engine::Law& law) {
+    const NetworkDescription scene =
+        mass_on_law(1, 1.0, Vec3(1e-3, 0, 0), Vec3::Zero(), state_machine(0.0, law), 0.0);
+    return plan_of(scene, 10.0).stability.holds();
+  };
+  const engine::Table stiffer{{-0.1, -1e-3, 1e-3, 0.1}, {-5e4, -300.0, 300.0, 5e4}};
+  const engine::Table softer{{-0.1, -1e-3, 1e-3, 0.1}, {-3e4, -500.0, 500.0, 3e4}};
+  EXPECT_TRUE(holds(stiffer)) << "K' = 0.3 to 0.5";
+  EXPECT_FALSE(holds(softer)) << "K' = 0.5 to 0.3";
 }
 
 TEST(Plan, IsNotCertainOfABendBesideAStiffVibration) {

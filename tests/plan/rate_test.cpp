@@ -209,6 +209,19 @@ TEST(RateSelection, TriesNothingOutWhoseStabilityIsNotCertain) {
       << selection.uncertainty;
 }
 
+TEST(RateSelection, TakesARateThatIsCertainOfABend) {
+  NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 0.034, 0.0, 1e-3);
+  scene.links.clear();
+  scene.state_machines = {state_machine(791734.0)};
+  scene.state_machines[0].states[0].force_limit = 7917.0;
+  scene.state_links = {{0, 1, 0, 0.0}};
+  const plan::RateSelection selection =
+      plan::select_rate(scene, {0.05, 20.0}, 1000.0, {"cordis", "leapfrog"}, false);
+  EXPECT_EQ(selection.rate_hz, 3000.0);
+  scene.step = 1.0 / selection.rate_hz;
+  EXPECT_TRUE(plan::plan_of(scene, 20.0).stability.holds());
+}
+
 /// A network that creeps, and where its last mass is after 0.5 s.
 struct Creep {
   NetworkDescription scene;

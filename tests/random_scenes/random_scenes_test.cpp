@@ -160,6 +160,11 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
     }
     const auto varying = plan::varying_slope_of(network, graph);
     if (varying) step = std::min(step, part * network.step / std::sqrt(varying->stiffness));
+    const auto falling = plan::falling_slope_of(network, graph);
+    if (falling) {
+      const double share = falling->stiffness / plan::kCertainFall;
+      step = std::min(step, part * network.step / std::sqrt(share));
+    }
     const double bend =
         std::max(contact ? contact->stiffness : 0.0, varying ? varying->stiffness : 0.0);
     const double stiffest = plan::stiffest_vibration(network, graph);

@@ -370,10 +370,33 @@ links:
 )";
   const auto loaded = loaded_scene_of(crumpled);
   EXPECT_TRUE(loaded->is_certain);
-  EXPECT_TRUE(loaded->may_turn);
+  EXPECT_TRUE(loaded->may_gain);
   const Alone seen = play_alone(crumpled, 20.0);
   EXPECT_EQ(seen.bound, PassedBound::kEnergy);
   EXPECT_FALSE(seen.is_beyond_reach);
+}
+
+/// A force limit lets each passage over it gain energy.
+TEST(ReachWatch, LetsGoWhereALawThatBendsMakesEnergy) {
+  const auto scene_at = [](const char* rate) {
+    return std::string(R"(cordis: 1
+name: limit
+space: 1
+step: {rate_hz: )") +
+           rate + R"(}
+matter:
+  w: {kind: fixed, at_m: [0]}
+  m: {kind: mass, mass_kg: 1, at_m: [0.034379202007691423]}
+liaisons: {l: {stiffness_n_per_m: 791734.9426283052, force_limit_n: 7917.349426283052}}
+links: [{liaison: l, between: [w, m], rest_m: 0}]
+)";
+  };
+  EXPECT_FALSE(loaded_scene_of(scene_at("1000"))->is_certain);
+  EXPECT_EQ(play_alone(scene_at("1000"), 5.0).bound, PassedBound::kEnergy);
+  const auto finer = loaded_scene_of(scene_at("3000"));
+  EXPECT_TRUE(finer->is_certain);
+  EXPECT_TRUE(finer->may_gain);
+  EXPECT_FALSE(loaded_scene_of(scene_at("100000"))->may_gain);
 }
 
 /// Likewise the pairs of a set, whose range is far.
@@ -389,7 +412,7 @@ links: [{liaison: k, within: m, rest_m: 1, range_m: 100}]
 )";
   const auto loaded = loaded_scene_of(crumpled);
   EXPECT_TRUE(loaded->is_certain);
-  EXPECT_TRUE(loaded->may_turn);
+  EXPECT_TRUE(loaded->may_gain);
   const Alone seen = play_alone(crumpled, 20.0);
   EXPECT_EQ(seen.bound, PassedBound::kEnergy);
   EXPECT_FALSE(seen.is_beyond_reach);

@@ -165,6 +165,8 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.set = index;
   side.bounded = slope.bounded;
   side.variation = slope.variation;
+  side.fall = slope.fall;
+  side.fall_anywhere = slope.fall_anywhere;
   side.damping_ratio = slope.damping_ratio;
   side.at_start = bounds.at_start;
   graph.contacts.push_back(side);
@@ -480,8 +482,8 @@ void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
     if (!graph.uncertainty && slopes->brings_energy && may_pass)
       graph.uncertainty = {liaison, kPresses};
     if (slopes->stiffness > 0.0 || slopes->viscosity > 0.0) {
-      graph.forces.push_back(
-          {drive.mat, slopes->stiffness, slopes->viscosity, slopes->variation, liaison});
+      graph.forces.push_back({drive.mat, slopes->stiffness, slopes->viscosity, slopes->variation,
+                              liaison, slopes->variation, slopes->variation});
     }
   }
 }
@@ -539,6 +541,7 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
   const Reach& reach = graph.reach;
   index = 0;
   SlopesOfLinks slopes(network, reach);
+  const bool knows_all_energy = network.sets.empty() || reach.counts_sets;
   for (const engine::StateLink& link : network.state_links) {
     Slope slope = slopes.slope_of(link);
     const engine::StateMachine& machine = network.state_machines[link.state_machine];
@@ -558,6 +561,8 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
                            slope.bounded,
                            slope.variation,
                            slope.damping_ratio});
+    graph.edges.back().fall = knows_all_energy ? slope.fall : slope.fall_anywhere;
+    graph.edges.back().fall_anywhere = slope.fall_anywhere;
   }
   for (index = 0; index < network.maxwell_links.size(); ++index)
     add_maxwell_link(network, index, graph);

@@ -48,6 +48,8 @@ struct Edge {
   double variation = 0.0;      ///< Slope::variation [N/m]
   double damping_ratio = 0.0;  ///< Slope::damping_ratio [s]
   bool follows = false;        ///< a parameter follows variables: it may be less than it is here
+  double fall = 0.0;           ///< Slope::fall [N/m]
+  double fall_anywhere = 0.0;  ///< Slope::fall_anywhere [N/m]
 };
 
 /// A driven force on a MAT that depends on its place or velocity, with the largest slopes it can have.
@@ -57,6 +59,8 @@ struct ForceBound {
   double viscosity = 0.0;  ///< [N s/m]
   double variation = 0.0;  ///< as Edge::variation [N/m]
   LiaisonId liaison;
+  double fall = 0.0;           ///< `variation`: the way of its bends is not looked at [N/m]
+  double fall_anywhere = 0.0;  ///< likewise [N/m]
 };
 
 /// One side of a set liaison: each member touches at most so many of the others at once. The
@@ -75,6 +79,8 @@ struct ContactBound {
   double damping_ratio = 0.0;      ///< as Edge::damping_ratio [s]
   std::uint32_t at_start = 0;      ///< the most partners of any mass of the set at the start
   bool follows = false;            ///< as Edge::follows
+  double fall = 0.0;               ///< as Edge::fall, of one pair [N/m]
+  double fall_anywhere = 0.0;      ///< likewise [N/m]
   bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run
 };
 

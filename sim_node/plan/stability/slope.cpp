@@ -11,6 +11,7 @@
 #include "sim_node/plan/stability/entry.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/meeting_exit.h"
+#include "sim_node/plan/stability/slope_fall.h"
 #include "sim_node/plan/stability/stretch.h"
 
 namespace cordis::plan {
@@ -356,6 +357,15 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
+    const auto fall_within = [&](const Interval& within) {
+      return slope_fall(state, rest_length, within, slope.stiffness, here);
+    };
+    const double fall_anywhere = fall_within(kAnyNumber);
+    const double fall = entry.by_a_change || fall_anywhere == 0.0
+                            ? fall_anywhere
+                            : fall_within(elongations_within(state, rest_length, here));
+    largest.fall_anywhere = std::max(largest.fall_anywhere, fall_anywhere);
+    largest.fall = std::max(largest.fall, fall);
     largest.damping_ratio = std::max(largest.damping_ratio, slope.damping_ratio);
     largest.bounded = largest.bounded && slope.bounded;
     // Such a state holds only where its exits let it: its slope beyond is no uncertainty.

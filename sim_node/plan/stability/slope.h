@@ -20,6 +20,10 @@ struct Slope {
   bool law_is_bounded = true;  ///< false: not bounded, and not for `passing` alone
   /// By how much the slope along the liaison varies in one of its states [N/m]: 0 for a spring.
   double variation = 0.0;
+  /// By how much it falls there, as slope_fall() has it [N/m]: where the energy of the Reach carries one of its states,
+  /// and wherever it may be.
+  double fall = 0.0;
+  double fall_anywhere = 0.0;
   /// The most that the viscosity is over the stiffness in one of its states [s]; infinite where one is viscous and may
   /// have no stiffness.
   double damping_ratio = 0.0;
