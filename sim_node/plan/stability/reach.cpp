@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "node/disjoint_sets.h"
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/law_energy.h"
@@ -63,17 +63,12 @@ bool needs_energy(const engine::NetworkDescription& network) {
 /// body is what links join; what is no mass joins nothing.
 double energy_of_bodies(const engine::NetworkDescription& network) {
   const std::size_t count = network.mats.size();
-  std::vector<std::uint32_t> body(count);
-  std::iota(body.begin(), body.end(), 0U);
-  const auto body_of = [&](std::uint32_t mat) {
-    while (body[mat] != mat) mat = body[mat] = body[body[mat]];
-    return mat;
-  };
+  node::DisjointSets bodies(count);
   const auto is_mass = [&](std::uint32_t mat) {
     return network.mats[mat].kind == engine::MatKind::kMass;
   };
   const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    if (is_mass(a) && is_mass(b)) body[body_of(a)] = body_of(b);
+    if (is_mass(a) && is_mass(b)) bodies.join(a, b);
   };
   for (const engine::Link& link : network.links) join(link.mat_a, link.mat_b);
   for (const engine::StateLink& link : network.state_links) join(link.mat_a, link.mat_b);
@@ -87,7 +82,7 @@ double energy_of_bodies(const engine::NetworkDescription& network) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const engine::Mat& mat = network.mats[i];
     if (!is_mass(i)) continue;
-    energy[body_of(i)] +=
+    energy[bodies.root_of(i)] +=
         mat.mass * (0.5 * mat.velocity.squaredNorm() + network.gravity_on(mat).norm() * extent);
   }
   return 2.0 * std::ranges::max(energy);
