@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "cli/ctl/control_line.h"
@@ -10,7 +11,9 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/session_address.h"
+#include "node/config/problem.h"
 #include "node/terminal_text.h"
+#include "sim_node/checks/planned_scene.h"
 
 namespace cordis::cli {
 namespace {
@@ -65,6 +68,15 @@ void check_role(const SessionAddress& address) {
       ", which does not command: `cordis keys add` makes one for a controller");
 }
 
+/// Prints what is wrong in a scene that was refused, where it can be read here: the reply has the places alone.
+void explain(const std::string& scene_file) {
+  std::error_code unknown;  // whether it is there
+  if (!std::filesystem::is_regular_file(scene_file, unknown)) return;
+  config::Problems problems;
+  static_cast<void>(sim::plan_scene(scene_file, {}, problems));
+  if (problems.has_errors()) node::print_text(stderr, "\n" + problems.text() + "\n");
+}
+
 int ctl(const CtlWords& words) {
   const ControlWords command = read_control_words(words.verb, words.words);
   const auto timeout = parse_duration(words.timeout);
@@ -81,6 +93,7 @@ int ctl(const CtlWords& words) {
     node::print_text(reply.accepted() ? stdout : stderr, reply.node() + ": " + reply.text() + "\n");
     if (!reply.accepted()) result = kBadInput;
   }
+  if (result == kBadInput && command.verb == msg::VERB_LOAD) explain(words.words.front());
   if (replies.size() < line.addressed_count(words.node)) {
     std::fprintf(stderr, "cordis ctl: others did not answer within %s\n", words.timeout.c_str());
     if (result == kSuccess) result = kFailure;
