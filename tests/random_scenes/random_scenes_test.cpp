@@ -122,6 +122,7 @@ class Brought {
     pumped_ = std::max(pumped_, -now.dissipated);
   }
   double energy() const { return start_ + fallen_ + well_ + from_outside_ + switched_ + pumped_; }
+  double well() const { return well_; }
   /// What no reach knows of.
   double unforeseen() const { return fallen_ + from_outside_ + switched_; }
 
@@ -447,7 +448,9 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
   sim::PartnerWatch partners(network);
   TurnWatch turns(network);
   const plan::ReachLimit reach = plan::reach_limit(network);
-  const plan::Stability stability = stability_of(network);
+  const plan::LiaisonGraph graph = plan::liaison_graph(network);
+  const plan::Stability stability = plan::stability_of(network, graph);
+  const double in_pairs = graph.reach.in_pairs;
   const double turns_from = stability.turning.energy;  // watched, not certified
   // A hand that pushes 0.05 kg for one step.
   const double push = 0.1 * network.step;
@@ -494,11 +497,11 @@ Outcome outcome_of(const scene::Scene& scene, const NetworkDescription& network,
                    " times the energy of the reach at step " + std::to_string(n);
       return run;
     }
-    // Where a pair counts with all the energy there is.
+    // Motion and pairs of sets may give a pair more than it counts with. All else counts whole.
+    const double shared = stability.pair_share ? at_start.kinetic + in_pairs + brought.well() : 0.0;
     for (const plan::PairLimit& pair : reach.pairs) {
-      if (stability.pair_share) break;
       const double unforeseen = whole - std::max(foreseen, 0.0);
-      const double of_pair = plan::pair_energy(world, network.sets[pair.set]) - unforeseen;
+      const double of_pair = plan::pair_energy(world, network.sets[pair.set]) - unforeseen - shared;
       if (!(of_pair > kSpare * pair.energy)) continue;
       run.growth = "laws have brought " + std::to_string(of_pair / pair.energy) +
                    " times the energy of its reach to a pair at step " + std::to_string(n);
