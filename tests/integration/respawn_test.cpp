@@ -175,15 +175,25 @@ TEST_F(Respawn, OfAPausedSimGivesNoForceBeforeResume) {
   EXPECT_TRUE(is_felt());
 }
 
-/// A sim_node that is killed as soon as `pause` was confirmed.
+/// A sim_node that is killed at the moment in which its reply to `pause` arrives.
 TEST_F(Respawn, OfASimThatSaidItIsPausedStaysPaused) {
+  dds::Reader<msg::ControlReply> replies(participant_, dds::Topic::kReply);
   ASSERT_TRUE(all_run());
   for (int life = 0; life < rounds(3); ++life) {
     const std::uint64_t old_epoch = status_.of("sim").epoch();
     const pid_t sim = process_of(launcher_, "sim");
     ChildProcess pause({program_path("cordis"), "ctl", "plucked_string", "--domain",
                         std::to_string(own_domain()), "pause"});
-    ASSERT_TRUE(pause.wait_for_output("paused at step", kPatience));
+    msg::ControlReply reply;
+    const auto is_confirmed = [&] {
+      return replies.take(reply) && reply.node() == "sim" &&
+             reply.text().starts_with("paused at step");
+    };
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (!is_confirmed()) {
+      ASSERT_LT(std::chrono::steady_clock::now(), end) << "no reply";
+      replies.wait(1ms);  // returns when one arrives
+    }
     ASSERT_EQ(kill(sim, SIGKILL), 0);
     pause.wait(kPatience);
 
