@@ -265,10 +265,11 @@ std::string contact_text(const SceneCheck& check) {
   if (!contact) return {};
   const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
   std::string text = fmt::format(
-      "contacts    one collision gains {:.2g} % of its energy at worst{}: {}{}\n",
+      "contacts    one collision gains {:.2g} % of its energy at worst{}: {}{}{}\n",
       100.0 * contact->worst,
       may_jump(check.scene.network, contact->liaison) ? ", more where its force jumps" : "",
-      liaison.name, location(liaison));
+      liaison.name, location(liaison),
+      contact->is_several ? " with what else touches its mass" : "");
   if (contact->worst >= kGainThatAddsUp)
     text +=
         "            without viscosity what collisions gain adds up, in the end without a limit\n";

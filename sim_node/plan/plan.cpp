@@ -17,6 +17,7 @@
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/start_point.h"
 #include "sim_node/plan/stability/start_tangent.h"
+#include "sim_node/plan/stability/touch_sum.h"
 
 namespace cordis::plan {
 namespace {
@@ -213,26 +214,13 @@ bool is_clamped(const engine::NetworkDescription& network, LiaisonId liaison) {
 /// @param clamped  only those that let go by being clamped
 std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription& network,
                                                const LiaisonGraph& graph, bool clamped) {
-  std::optional<ContactGain> worst;
-  const auto consider = [&](LiaisonId liaison, double stiffness, double inverse_mass) {
-    const double normalised = stiffness * inverse_mass * network.step * network.step;
-    if (worst && normalised <= worst->stiffness) return;
-    const double gain = normalised < 4.0 ? normalised / (4.0 - normalised)
-                                         : std::numeric_limits<double>::infinity();
-    worst = {liaison, normalised, gain};
-  };
-  for (const Edge& edge : graph.edges) {
-    if (!comes_and_goes(network, edge.liaison)) continue;
-    if (clamped && !is_clamped(network, edge.liaison)) continue;
-    consider(edge.liaison, edge.stiffness,
-             graph.inverse_mass[edge.mat_a] + graph.inverse_mass[edge.mat_b]);
-  }
-  for (const ContactBound& contact : graph.contacts) {
-    if (clamped && !is_clamped(network, {LiaisonKind::kSet, contact.set})) continue;
-    consider({LiaisonKind::kSet, contact.set}, contact.stiffness,
-             lightest(graph, contact.members) + lightest(graph, contact.others));
-  }
-  return worst;
+  const std::optional<TouchSum> touch = largest_touch(network, graph, [&](LiaisonId liaison) {
+    return comes_and_goes(network, liaison) && (!clamped || is_clamped(network, liaison));
+  });
+  if (!touch) return {};
+  const double gain = touch->stiffness < 4.0 ? touch->stiffness / (4.0 - touch->stiffness)
+                                             : std::numeric_limits<double>::infinity();
+  return ContactGain{touch->liaison, touch->stiffness, gain, touch->is_several, touch->alone};
 }
 
 }  // namespace
@@ -267,7 +255,12 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
   const double touch = contact ? contact->stiffness : 0.0;
   if (touch > kCertainBend) {
-    return Uncertainty{contact->liaison, "each touch of it may gain energy, for its K' is above 1"};
+    return Uncertainty{
+        contact->liaison,
+        contact->alone > kCertainBend
+            ? "each touch of it may gain energy, for its K' is above 1"
+            : "each touch of it with what else touches the same mass may gain energy, for their K' "
+              "together is above 1"};
   }
   const std::optional<VaryingSlope> varying = varying_slope_of(network, graph);
   const double variation = varying ? varying->stiffness : 0.0;

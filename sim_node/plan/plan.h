@@ -93,12 +93,14 @@ std::vector<BandEdge> lighter_creeps(const BandEdge& edge);
 BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGraph& graph,
                       double frequency_hz);
 
-/// The liaison that comes and goes and is the stiffest for its masses. At its switching the scheme
+/// The liaisons that come and go at one mass and are together the stiffest for it. At their switching the scheme
 /// changes the energy of a collision by a factor between 1 - K'/4 and 1 / (1 - K'/4).
 struct ContactGain {
-  LiaisonId liaison;
-  double stiffness = 0.0;  ///< K' = K dt^2 / reduced mass
-  double worst = 0.0;      ///< 1 / (1 - K'/4) - 1; infinite from K' = 4 on
+  LiaisonId liaison;        ///< the one that counts the most
+  double stiffness = 0.0;   ///< K' of largest_touch(): of one, K dt^2 / reduced mass
+  double worst = 0.0;       ///< 1 / (1 - K'/4) - 1; infinite from K' = 4 on
+  bool is_several = false;  ///< other liaisons touch the same mass
+  double alone = 0.0;       ///< K' of that liaison, with its pairs of a set
 };
 
 /// None when no liaison comes and goes.

@@ -173,6 +173,66 @@ TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   EXPECT_TRUE(stability_at(500.0).holds());
 }
 
+TEST(Plan, AddsUpContactsThatTouchOneMassTogether) {
+  // Each has K' = 0.499.
+  const auto plan_with = [](std::size_t count, int dimension) {
+    NetworkDescription scene =
+        mass_on_law(dimension, 1.0, Vec3(1e-5, 0, 0), Vec3::Zero(), contact(499e3), 0.0);
+    scene.state_links.resize(count, scene.state_links[0]);
+    return plan_of(scene, 10.0);
+  };
+  const plan::Plan two = plan_with(2, 1);
+  EXPECT_TRUE(two.stability.holds());
+  EXPECT_NEAR(two.worst_contact->stiffness, 0.998, 1e-9);
+  for (const int dimension : {1, 2, 3}) {
+    const plan::Plan four = plan_with(4, dimension);
+    EXPECT_FALSE(four.stability.holds());
+    EXPECT_NEAR(four.worst_contact->stiffness, 1.996, 1e-9);
+    ASSERT_TRUE(four.stability.uncertainty.has_value());
+    EXPECT_NE(four.stability.uncertainty->why.find("together"), std::string::npos);
+  }
+}
+
+TEST(Plan, AddsUpNoContactsOfTwoSidesOfALine) {
+  NetworkDescription scene =
+      mass_on_law(1, 1.0, Vec3(1e-5, 0, 0), Vec3::Zero(), contact(800e3), 0.0);
+  scene.mats.push_back(fixed(Vec3(0.1, 0, 0)));
+  scene.state_links.push_back({1, 2, 0, 0.0});
+  EXPECT_NEAR(plan_of(scene, 10.0).worst_contact->stiffness, 0.8, 1e-9);
+  scene.state_links[1] = {2, 1, 0, 0.0};  // pushes it the same way
+  EXPECT_NEAR(plan_of(scene, 10.0).worst_contact->stiffness, 1.6, 1e-9);
+}
+
+/// A ball of 1 kg that touches fixed points with K' = 0.499 each.
+NetworkDescription ball_on_points(const std::vector<Vec3>& points, double range) {
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.state_machines.push_back(contact(499e3));
+  engine::SetLiaison set;
+  for (const Vec3& place : points) {
+    set.set_p.push_back(static_cast<std::uint32_t>(scene.mats.size()));
+    scene.mats.push_back(fixed(place));
+  }
+  set.set_q = {static_cast<std::uint32_t>(scene.mats.size())};
+  scene.mats.push_back(mass(1.0, Vec3(0, 1.003, 0)));
+  set.rest_length = set.range = range;
+  scene.sets.push_back(set);
+  return scene;
+}
+
+TEST(Plan, AddsUpThePairsOfASetOnOneSideOfAMass) {
+  const plan::Plan near = plan_of(
+      ball_on_points({{-0.003, 0, 0}, {-0.001, 0, 0}, {0.001, 0, 0}, {0.003, 0, 0}}, 1.0), 10.0);
+  EXPECT_FALSE(near.stability.holds());
+  EXPECT_NEAR(near.worst_contact->stiffness, 1.996, 1e-6);
+  // One that lies between four that are far from each other has one or two on a side.
+  const plan::Plan far =
+      plan_of(ball_on_points({{-1, 1, 0}, {1, 1, 0}, {0, 0, 0}, {0, 2, 0}}, 1.0), 10.0);
+  EXPECT_LE(far.worst_contact->stiffness, 2.0 * 0.998);
+  EXPECT_GE(far.worst_contact->stiffness, 0.499);
+}
+
 TEST(Plan, NamesTheStepUpToWhichItIsCertain) {
   engine::StateMachine thread = state_machine(2500.0);
   thread.states[0].pushes = false;

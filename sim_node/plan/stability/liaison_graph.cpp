@@ -20,6 +20,7 @@
 #include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
+#include "sim_node/plan/stability/touch_sum.h"
 
 namespace cordis::plan {
 namespace {
@@ -160,6 +161,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.others = of_p && !set.set_q.empty() ? set.set_q : set.set_p;
   side.neighbours.assign(bounds.needed.begin() + first, bounds.needed.begin() + last);
   side.possible.assign(bounds.possible.begin() + first, bounds.possible.begin() + last);
+  side.apart = apart_of(network, set, side);
   side.stiffness = slope.stiffness;
   side.viscosity = slope.viscosity;
   side.set = index;

@@ -71,6 +71,7 @@ struct ContactBound {
   std::vector<std::uint32_t> others;
   std::vector<double> neighbours;  ///< per member
   std::vector<double> possible;    ///< per member: no pose has more
+  std::vector<double> apart;       ///< per member: so many of `neighbours` touch on other sides
   double stiffness = 0.0;          ///< stiffness of one pair [N/m]
   double viscosity = 0.0;          ///< viscosity of one pair [N s/m]
   std::uint32_t set = 0;           ///< index in NetworkDescription::sets
