@@ -213,10 +213,12 @@ bool is_clamped(const engine::NetworkDescription& network, LiaisonId liaison) {
 
 /// @param clamped  only those that let go by being clamped
 std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription& network,
-                                               const LiaisonGraph& graph, bool clamped) {
-  const std::optional<TouchSum> touch = largest_touch(network, graph, [&](LiaisonId liaison) {
+                                               const LiaisonGraph& graph, bool clamped,
+                                               Packs packs = Packs::kAsOneSide) {
+  const auto counts = [&](LiaisonId liaison) {
     return comes_and_goes(network, liaison) && (!clamped || is_clamped(network, liaison));
-  });
+  };
+  const std::optional<TouchSum> touch = largest_touch(network, graph, counts, packs);
   if (!touch) return {};
   const double gain = touch->stiffness < 4.0 ? touch->stiffness / (4.0 - touch->stiffness)
                                              : std::numeric_limits<double>::infinity();
@@ -253,8 +255,7 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
     return Uncertainty{*damper, "it may gain energy where it turns by more than 0.2 rad in a step"};
   }
   const std::optional<ContactGain> contact = worst_contact_among(network, graph, /*clamped=*/true);
-  const double touch = contact ? contact->stiffness : 0.0;
-  if (touch > kCertainBend) {
+  if (contact && contact->stiffness > kCertainBend) {
     return Uncertainty{
         contact->liaison,
         contact->alone > kCertainBend
@@ -275,13 +276,17 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
         falling->liaison,
         "each passage over its bend may gain energy, for its K' falls by more than 0.1"};
   }
+  // Balls between which a ball lies are the vibration beside its touch.
+  const std::optional<ContactGain> stop =
+      worst_contact_among(network, graph, /*clamped=*/true, Packs::kAsOneBall);
+  const double touch = stop ? stop->stiffness : 0.0;
   constexpr double kMaxNumber = 4.0;  // K' of any vibration
   constexpr double kCertainBesideAll = certain_beside(kMaxNumber) / kMaxNumber;
   if (std::max(touch, variation) <= kCertainBesideAll) return {};
   const double stiffest = stiffest_vibration(network, graph);
   if (std::max(touch, variation) * stiffest <= certain_beside(stiffest)) return {};
   return Uncertainty{
-      touch > variation ? contact->liaison : varying->liaison,
+      touch > variation ? stop->liaison : varying->liaison,
       "it may gain energy from a stiff vibration beside it, for the product of what "
       "its K' varies by and the K' of that is above 1, or 0.6 where that has K' above 2"};
 }

@@ -58,14 +58,31 @@ void add_edge(const NetworkDescription& network, const LiaisonGraph& graph, cons
   }
 }
 
-void add_contact(const LiaisonGraph& graph, const ContactBound& contact, TouchesOfMats& all) {
+/// How many that touch a MAT on all sides touch it on one.
+double share_of_a_side(int dimension, double number) {
+  return std::max(number / (2.0 * dimension), std::min(number, 1.0));
+}
+
+/// What balls that a ball meets between count for beyond one of them.
+double beyond_one(const NetworkDescription& network, const ContactBound& contact) {
+  const auto is_mass = [&](std::uint32_t mat) {
+    return network.mats[mat].kind == engine::MatKind::kMass;
+  };
+  if (std::ranges::none_of(contact.others, is_mass)) return 0.0;
+  return share_of_a_side(network.dimension, max_neighbours(network.dimension, 0.0, 0.0)) - 1.0;
+}
+
+/// @param spare  so many partners of a member count for nothing, but for the first
+void add_contact(const LiaisonGraph& graph, const ContactBound& contact, double spare,
+                 TouchesOfMats& all) {
   const LiaisonId id{LiaisonKind::kSet, contact.set};
   const double lightest = largest_of_others(contact, graph.inverse_mass);
   for (std::size_t m = 0; m < contact.members.size(); ++m) {
     const double touching = std::max(contact.neighbours[m] - contact.apart[m], 0.0);
     if (touching == 0.0) continue;
     for (Touches& side : all[contact.members[m]])
-      side.add(id, std::max(touching, 1.0) * contact.stiffness, contact.stiffness, lightest);
+      side.add(id, std::max(touching - spare, 1.0) * contact.stiffness, contact.stiffness,
+               lightest);
   }
 }
 
@@ -99,11 +116,6 @@ double surfaces_on_one_side(const NetworkDescription& network,
     most = std::max(most, row);
   }
   return most;
-}
-
-/// How many that touch a MAT on all sides touch it on one.
-double share_of_a_side(int dimension, double number) {
-  return std::max(number / (2.0 * dimension), std::min(number, 1.0));
 }
 
 }  // namespace
@@ -145,14 +157,15 @@ std::vector<double> apart_of(const NetworkDescription& network, const engine::Se
 }
 
 std::optional<TouchSum> largest_touch(const NetworkDescription& network, const LiaisonGraph& graph,
-                                      const std::function<bool(LiaisonId)>& counts) {
+                                      const std::function<bool(LiaisonId)>& counts, Packs packs) {
   TouchesOfMats all(graph.inverse_mass.size());
   for (const Edge& edge : graph.edges) {
     if (counts(edge.liaison)) add_edge(network, graph, edge, all);
   }
   for (const ContactBound& contact : graph.contacts) {
     if (contact.counted && counts({LiaisonKind::kSet, contact.set}))
-      add_contact(graph, contact, all);
+      add_contact(graph, contact, packs == Packs::kAsOneBall ? beyond_one(network, contact) : 0.0,
+                  all);
   }
   std::optional<TouchSum> most;
   for (std::size_t mat = 0; mat < all.size(); ++mat) {

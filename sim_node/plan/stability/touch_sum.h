@@ -1,6 +1,7 @@
 // sim_node/plan/stability/touch_sum.h -- what may touch one mass at once, added up.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -18,6 +19,9 @@ struct TouchSum {
   double alone = 0.0;       ///< K' of that one
 };
 
+/// How balls that a ball meets between count: as those of one side, or as one of them.
+enum class Packs : std::uint8_t { kAsOneSide, kAsOneBall };
+
 /// By member of a side of a set: how many of its neighbours do not touch it from one side.
 std::vector<double> apart_of(const engine::NetworkDescription& network,
                              const engine::SetLiaison& set, const ContactBound& side);
@@ -33,6 +37,7 @@ std::vector<double> apart_of(const engine::NetworkDescription& network,
 /// O(liaisons + members). @param counts  true for a liaison that comes and goes
 std::optional<TouchSum> largest_touch(const engine::NetworkDescription& network,
                                       const LiaisonGraph& graph,
-                                      const std::function<bool(LiaisonId)>& counts);
+                                      const std::function<bool(LiaisonId)>& counts,
+                                      Packs packs = Packs::kAsOneSide);
 
 }  // namespace cordis::plan
