@@ -13,7 +13,7 @@
 #include "cli/session_address.h"
 #include "node/config/problem.h"
 #include "node/terminal_text.h"
-#include "sim_node/checks/planned_scene.h"
+#include "sim_node/scene/sections/scene_reader.h"
 
 namespace cordis::cli {
 namespace {
@@ -73,7 +73,7 @@ void explain(const std::string& scene_file) {
   std::error_code unknown;  // whether it is there
   if (!std::filesystem::is_regular_file(scene_file, unknown)) return;
   config::Problems problems;
-  static_cast<void>(sim::plan_scene(scene_file, {}, problems));
+  static_cast<void>(scene::load_scene(scene_file, problems));
   if (problems.has_errors()) node::print_text(stderr, "\n" + problems.text() + "\n");
 }
 

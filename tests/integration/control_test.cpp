@@ -279,7 +279,7 @@ links:
 TEST_P(Control, ASceneWithErrorsIsRefusedWithThemAllAndTheOldOneGoesOn) {
   start();
   expect_refused({"load", "bad.yaml"}, "bad.yaml:2:8: error: something is wrong here\n");
-  // Who may read the file is told by `cordis ctl` itself.
+  // `cordis ctl` itself says it where it can read the file.
   expect_refused({"load", (session_.folder() / "bad.yaml").string()},
                  "bad.yaml:2:8: error: 'space' in scene must be between 1 and 3, got 7");
   expect_refused({"load", "nowhere.yaml"}, "cannot be read");
