@@ -264,9 +264,13 @@ std::string contact_text(const SceneCheck& check) {
   const auto& contact = check.plan.worst_contact;
   if (!contact) return {};
   const scene::Called liaison = scene::call_liaison(check.scene, contact->liaison);
+  constexpr double kWhole = 0.995;  // from here on whole percent
+  const double gain = 100.0 * contact->worst;
+  const std::string share = contact->worst < kWhole ? fmt::format("{:.2g} % of its energy", gain)
+                            : std::isfinite(gain)   ? fmt::format("{:.0f} % of its energy", gain)
+                                                    : "energy without a bound";
   std::string text = fmt::format(
-      "contacts    one collision gains {:.2g} % of its energy at worst{}: {}{}{}\n",
-      100.0 * contact->worst,
+      "contacts    one collision gains {} at worst{}: {}{}{}\n", share,
       may_jump(check.scene.network, contact->liaison) ? ", more where its force jumps" : "",
       liaison.name, location(liaison),
       contact->is_several ? " with what else touches its mass" : "");

@@ -166,6 +166,8 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
       const double share = falling->stiffness / plan::kCertainFall;
       step = std::min(step, part * network.step / std::sqrt(share));
     }
+    constexpr double kShortest = 1e-7;  // [s]: no session is faster
+    if (step < kShortest) return std::nullopt;
     const double bend =
         std::max(contact ? contact->stiffness : 0.0, varying ? varying->stiffness : 0.0);
     const double stiffest = plan::stiffest_vibration(network, graph);

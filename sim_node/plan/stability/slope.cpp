@@ -357,7 +357,8 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
-    const auto fall_within = [&](const Interval& within) {
+    const auto fall_within = [&](Interval within) {
+      if (dimension > 1) within.low = std::max(within.low, -rest_length);  // ends are never nearer
       return slope_fall(state, rest_length, within, slope.stiffness, here);
     };
     const double fall_anywhere = fall_within(kAnyNumber);
