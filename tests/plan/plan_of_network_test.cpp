@@ -313,6 +313,16 @@ TEST(Plan, IsCertainOfALawThatOnlyBecomesStiffer) {
   EXPECT_FALSE(holds(softer)) << "K' = 0.5 to 0.3";
 }
 
+TEST(Plan, LooksForBendsAtDistancesThatThereAre) {
+  // exp(-20 distance) is steep at distances below 0, which a line alone has.
+  const Term push = one(Operation::kExp, -20.0 * q(Quantity::kDistance));
+  StateMachine law = state_machine(10.0, expression_law(-1.0 * push));
+  const auto scene_of = [&](int dimension) {
+    return mass_on_law(dimension, 0.01, Vec3(0.1, 0, 0), Vec3::Zero(), law, 0.1);
+  };
+  EXPECT_FALSE(plan_of(scene_of(2), 10.0).stability.bending.has_value());
+}
+
 TEST(Plan, IsNotCertainOfABendBesideAStiffVibration) {
   // A mass on a spring, with a stop that it just touches, K' of both: a third of a turn in a step
   // passes the bend in step with itself.
