@@ -125,9 +125,8 @@ std::string pair_share_text(const SceneCheck& check) {
   const scene::Called set =
       scene::call_liaison(check.scene, plan::LiaisonId{plan::LiaisonKind::kSet, share->set});
   return fmt::format(
-      "            a pair of {} counts with {:.3g} J, of {:.3g} J in the scene; more in one pair "
-      "is "
-      "watched\n",
+      "            a pair of {} counts with {:.3g} J, of {:.3g} J in the scene; more in one "
+      "pair is watched\n",
       set.name, share->energy, share->whole);
 }
 

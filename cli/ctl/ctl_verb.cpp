@@ -70,8 +70,8 @@ void check_role(const SessionAddress& address) {
 
 /// Prints what is wrong in a scene that was refused, where it can be read here: the reply has the places alone.
 void explain(const std::string& scene_file) {
-  std::error_code unknown;  // whether it is there
-  if (!std::filesystem::is_regular_file(scene_file, unknown)) return;
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(scene_file, failure)) return;
   config::Problems problems;
   static_cast<void>(scene::load_scene(scene_file, problems));
   if (problems.has_errors()) node::print_text(stderr, "\n" + problems.text() + "\n");
