@@ -196,8 +196,10 @@ TEST_P(BandEdge, HoldsForWhatCreepsBesideHeavierDampers) {
     scene.mats = {fixed(Vec3::Zero())};
     std::vector<double> exact;
     for (std::uint32_t i = 1; i <= 3; ++i) {
-      const double w = decades(random, 30.0, 120.0);
-      const double rate = w * decades(random, 1.25, 20.0);  // Z / 2 m
+      // the lightest creep of the band is among them in every other round
+      const bool is_edge = n % 2 == 0 && i == 1;
+      const double w = is_edge ? 120.0 : decades(random, 30.0, 120.0);
+      const double rate = w * (is_edge ? 1.25 : decades(random, 1.25, 20.0));  // Z / 2 m
       scene.mats.push_back(mass(1.0, Vec3(0.001, 0, 0)));
       scene.links.push_back({0, i, w * w, 2.0 * rate, 0.0});
       exact.push_back(w * w / (rate + std::sqrt(rate * rate - w * w)));
@@ -211,7 +213,7 @@ TEST_P(BandEdge, HoldsForWhatCreepsBesideHeavierDampers) {
       worst = std::max(worst, error / std::abs(edge.creep));
     }
   }
-  EXPECT_GT(worst, 0.3);  // it says not much more than what is
+  EXPECT_GT(worst, 0.9);  // it says not much more than what is
 }
 
 TEST(BandEdge, ARateIsChosenForTheLightestCreep) {
