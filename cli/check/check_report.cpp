@@ -94,12 +94,23 @@ std::string turning_text(const SceneCheck& check) {
 /// What gains energy little by little at a certified step.
 std::string bending_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
-  if (!stability.bending || !stability.holds()) return {};
-  const scene::Called law = scene::call_liaison(check.scene, stability.bending);
-  return fmt::format(
-      "            what passages over the bend of {}{} gain may add up without\n"
-      "            viscosity; energy is watched during the run\n",
-      law.name, location(law));
+  if (!stability.holds()) return {};
+  std::string text;
+  if (stability.bending) {
+    const scene::Called law = scene::call_liaison(check.scene, stability.bending);
+    text += fmt::format(
+        "            what passages over the bend of {}{} gain may add up without\n"
+        "            viscosity; energy is watched during the run\n",
+        law.name, location(law));
+  }
+  if (stability.touching) {
+    const scene::Called contact = scene::call_liaison(check.scene, stability.touching);
+    text += fmt::format(
+        "            what touches of {}{} gain may add up, for its viscosity\n"
+        "            may take less; energy is watched during the run\n",
+        contact.name, location(contact));
+  }
+  return text;
 }
 
 /// Where the step is surely unstable: from which rate on it is not.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -174,11 +175,6 @@ std::optional<LiaisonId> passed_surface(const engine::NetworkDescription& networ
   return graph.passing * swing >= 1.0 ? graph.passable : std::nullopt;
 }
 
-/// True if a state acts at some distances and not at others.
-bool lets_go(const engine::LinkState& state) {
-  return !state.pulls || !state.pushes || std::holds_alternative<engine::Rings>(state.elasticity);
-}
-
 /// True if a liaison of this state machine acts at some times and not at others.
 bool switches(const engine::StateMachine& state_machine) {
   for (const engine::LinkState& state : state_machine.states) {
@@ -211,6 +207,18 @@ bool is_clamped(const engine::NetworkDescription& network, LiaisonId liaison) {
   return std::any_of(states.begin(), states.end(), lets_go);
 }
 
+/// @param counts  of a liaison
+std::optional<ContactGain> worst_touch_among(const engine::NetworkDescription& network,
+                                             const LiaisonGraph& graph,
+                                             const std::function<bool(LiaisonId)>& counts,
+                                             Packs packs) {
+  const std::optional<TouchSum> touch = largest_touch(network, graph, counts, packs);
+  if (!touch) return {};
+  const double gain = touch->stiffness < 4.0 ? touch->stiffness / (4.0 - touch->stiffness)
+                                             : std::numeric_limits<double>::infinity();
+  return ContactGain{touch->liaison, touch->stiffness, gain, touch->is_several, touch->alone};
+}
+
 /// @param clamped  only those that let go by being clamped
 std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription& network,
                                                const LiaisonGraph& graph, bool clamped,
@@ -218,11 +226,13 @@ std::optional<ContactGain> worst_contact_among(const engine::NetworkDescription&
   const auto counts = [&](LiaisonId liaison) {
     return comes_and_goes(network, liaison) && (!clamped || is_clamped(network, liaison));
   };
-  const std::optional<TouchSum> touch = largest_touch(network, graph, counts, packs);
-  if (!touch) return {};
-  const double gain = touch->stiffness < 4.0 ? touch->stiffness / (4.0 - touch->stiffness)
-                                             : std::numeric_limits<double>::infinity();
-  return ContactGain{touch->liaison, touch->stiffness, gain, touch->is_several, touch->alone};
+  return worst_touch_among(network, graph, counts, packs);
+}
+
+/// Z / K that takes as much of a touch of K' as it may gain [s]: exp(2 pi zeta) = 1 / (1 - K'/4), with
+/// zeta = (Z / K) sqrt(K') / 2 dt.
+double damping_of_gain(double stiffness, double step) noexcept {
+  return -std::log1p(-0.25 * stiffness) * step / (std::numbers::pi * std::sqrt(stiffness));
 }
 
 }  // namespace
@@ -262,6 +272,12 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
             ? "each touch of it may gain energy, for its K' is above 1"
             : "each touch of it with what else touches the same mass may gain energy, for their K' "
               "together is above 1"};
+  }
+  const std::optional<ContactGain> undamped = undamped_contact_of(network, graph);
+  if (undamped && undamped->stiffness > kCertainFall) {
+    return Uncertainty{
+        undamped->liaison,
+        "each touch of it may gain more energy than its viscosity takes, for its K' is above 0.1"};
   }
   const std::optional<VaryingSlope> varying = varying_slope_of(network, graph);
   const double variation = varying ? varying->stiffness : 0.0;
@@ -316,6 +332,8 @@ Stability stability_of(const engine::NetworkDescription& network, const LiaisonG
   constexpr double kNegligibleFall = 0.01;  // K'
   const auto bending = falling_slope_of(network, graph, /*anywhere=*/true);
   if (bending && bending->stiffness > kNegligibleFall) stability.bending = bending->liaison;
+  const auto touching = undamped_contact_of(network, graph);
+  if (touching && touching->stiffness > kNegligibleFall) stability.touching = touching->liaison;
   stability.sets = partner_limits(network, graph, stability.holds());
   stability.uncertainty = uncertainty_of(network, graph);
   // The two limits are found in ways that have nothing in common: where they cross one is wrong.
@@ -551,6 +569,27 @@ BandEdge band_edge_of(const engine::NetworkDescription& network, const LiaisonGr
 std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
                                             const LiaisonGraph& graph) {
   return worst_contact_among(network, graph, /*clamped=*/false);
+}
+
+std::optional<ContactGain> undamped_contact_of(const engine::NetworkDescription& network,
+                                               const LiaisonGraph& graph) {
+  const std::optional<ContactGain> all = worst_contact_among(network, graph, /*clamped=*/true);
+  if (!all) return {};
+  const double enough = damping_of_gain(std::min(all->stiffness, kCertainBend), network.step);
+  std::vector<bool> is_undamped_link(network.state_links.size());
+  std::vector<bool> is_undamped_set(network.sets.size());
+  for (const Edge& edge : graph.edges) {
+    if (edge.liaison.kind == LiaisonKind::kStateLink)
+      is_undamped_link[edge.liaison.index] = edge.touch_damping < enough;
+  }
+  for (const ContactBound& contact : graph.contacts)
+    is_undamped_set[contact.set] = contact.touch_damping < enough;
+  const auto counts = [&](LiaisonId liaison) {
+    return liaison.kind == LiaisonKind::kSet
+               ? is_undamped_set[liaison.index]
+               : liaison.kind == LiaisonKind::kStateLink && is_undamped_link[liaison.index];
+  };
+  return worst_touch_among(network, graph, counts, Packs::kAsOneSide);
 }
 
 namespace {

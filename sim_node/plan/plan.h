@@ -24,7 +24,8 @@ inline constexpr double certain_beside(double stiffest) noexcept {
   return stiffest > kQuarterTurn ? 0.6 : 1.0;
 }
 
-/// The largest K' by which a slope may fall and be certain: in 20,000 steps energy grew 1.7 times at most.
+/// The largest K' that may let go without viscosity, or by which a slope may fall, and be certain: in 20,000 steps energy
+/// grew 1.7 times at most.
 inline constexpr double kCertainFall = 0.1;
 
 /// What is surely stable, what surely diverges.
@@ -43,6 +44,8 @@ struct Stability {
   Turning turning;                         ///< what may gain energy below every certified step
   /// What gains energy in the end at a certified step, passage by passage: a bend, with what it falls by anywhere.
   std::optional<LiaisonId> bending;
+  /// Likewise touch by touch: the one of undamped_contact_of().
+  std::optional<LiaisonId> touching;
 
   bool holds() const noexcept { return step < certified.step && !uncertainty; }
   bool diverges() const noexcept { return step > diverging_step; }
@@ -106,6 +109,12 @@ struct ContactGain {
 /// None when no liaison comes and goes.
 std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& network,
                                             const LiaisonGraph& graph);
+
+/// Likewise among the liaisons whose viscosity may take less of each touch than the scheme brings in. A touch gains at
+/// most 1 / (1 - K'/4) times its energy, and loses exp(-2 pi zeta) times at the damping ratio zeta. Above K' = 1, where
+/// nothing is certain, the viscosity for K' = 1 counts. O(liaisons).
+std::optional<ContactGain> undamped_contact_of(const engine::NetworkDescription& network,
+                                               const LiaisonGraph& graph);
 
 /// The liaison whose slope varies the most for its masses: between two samples on either side of a bend
 /// the scheme changes the energy of a passage, as that of a contact.

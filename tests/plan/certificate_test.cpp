@@ -398,6 +398,7 @@ TEST(Certificate, IsNotGivenToASetThatPushesAtItsRange) {
   scene.mats = {mass(0.01, Vec3::Zero()), mass(0.01, Vec3(0.2, 0, 0))};
   scene.state_machines = {state_machine(1000.0)};
   scene.state_machines[0].states[0].pulls = false;
+  scene.state_machines[0].states[0].viscosity = 0.1;
   engine::SetLiaison set;
   set.set_p = {0, 1};
   set.rest_length = 0.1;

@@ -162,7 +162,7 @@ TEST(Partners, OfABallOnAFloorAreThePointsInItsReachWhereverItFalls) {
   EXPECT_FALSE(stability.holds());
 
   // Points a diameter apart: one or a few at a time.
-  const plan::Stability coarse = plan_of(ball_on_floor(0.01, 200.0), 10.0).stability;
+  const plan::Stability coarse = plan_of(ball_on_floor(0.01, 20.0), 10.0).stability;
   EXPECT_TRUE(coarse.holds());
   EXPECT_TRUE(coarse.sets[0].is_guaranteed());
 }
@@ -214,7 +214,7 @@ TEST(Partners, OfManyLargeSetsAreRaisedTogetherAlone) {
       all.sets.push_back(set);
     }
     const plan::Stability stability = plan_of(all, 10.0).stability;
-    EXPECT_TRUE(stability.holds());
+    EXPECT_LT(stability.step, stability.certified.step);
     EXPECT_NEAR(stability.sets.front().least, 19.0, 1.0);
     return stability.sets.back().certified.front();
   };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <utility>
 
@@ -160,24 +161,66 @@ TEST(Plan, AFeltHammerAtItsRateBringsInNoEnergy) {
 TEST(Plan, IsNotCertainOfAContactThatGainsEnergyAtEachTouch) {
   engine::StateMachine thread = state_machine(2500.0);
   thread.states[0].pushes = false;
-  const auto stability_at = [&](double stiffness) {
+  const auto stability_at = [&](double stiffness, double viscosity = 0.0) {
     thread.states[0].stiffness = stiffness;
+    thread.states[0].viscosity = viscosity;
     return plan_of(mass_on_law(2, 0.001, Vec3(0.2, 0, 0), Vec3::Zero(), thread, 0.2), 10.0)
         .stability;
   };
-  const plan::Stability stiff = stability_at(2500.0);  // K' = 2.5
+  const plan::Stability stiff = stability_at(2500.0, 1.0);  // K' = 2.5
   EXPECT_FALSE(stiff.holds());
   EXPECT_FALSE(stiff.diverges());
   ASSERT_TRUE(stiff.uncertainty.has_value());
   EXPECT_EQ(stiff.uncertainty->liaison.index, 0u);
-  EXPECT_TRUE(stability_at(500.0).holds());
+  // What a touch of K' = 0.5 may gain at most, its viscosity takes where 2 pi zeta is more than -ln(1 - K'/4).
+  const double enough = -std::log1p(-0.125) * 500.0 * 1e-3 / (std::numbers::pi * std::sqrt(0.5));
+  EXPECT_FALSE(stability_at(500.0).holds());
+  EXPECT_FALSE(stability_at(500.0, 0.99 * enough).holds());
+  EXPECT_TRUE(stability_at(500.0, 1.01 * enough).holds());
+  EXPECT_FALSE(stability_at(500.0, 1.01 * enough).touching.has_value());
+  EXPECT_TRUE(stability_at(99.0).holds());
+  EXPECT_TRUE(stability_at(99.0).touching.has_value()) << "it is watched";
+  EXPECT_FALSE(stability_at(9.0).touching.has_value());
+}
+
+/// The most that a mass rises to that falls again and again on a contact, over where it began.
+/// @param damping  Z' / K'
+double rise_after_falls(double number, double damping, double height, double weight) {
+  StateMachine law = contact(number);
+  law.states[0].viscosity = damping * number;
+  NetworkDescription scene = mass_on_law(1, 1.0, Vec3(height, 0, 0), Vec3::Zero(), law, 0.0);
+  scene.step = 1.0;
+  scene.gravity = Vec3(-weight, 0, 0);
+  World world = make_world(scene);
+  double highest = height;
+  for (int step = 0; step < 20'000; ++step) {
+    world.step();
+    highest = std::max(highest, world.position(1).x());
+  }
+  return highest / height;
+}
+
+TEST(Plan, IsCertainOfContactsWhoseViscosityTakesWhatTouchesGain) {
+  std::mt19937 random(test_seed());
+  std::uniform_real_distribution<double> share;
+  for (int n = 0; n < rounds(60); ++n) {
+    const double height = std::pow(10.0, 2.0 * share(random) - 2.0);
+    const double weight = std::pow(10.0, 2.0 * share(random) - 5.0);
+    const double number = 0.1 + 0.9 * share(random);
+    const double enough = -std::log1p(-0.25 * number) / (std::numbers::pi * std::sqrt(number));
+    EXPECT_LT(rise_after_falls(number, enough, height, weight), 1.2) << number;
+    EXPECT_LT(rise_after_falls(0.1 * share(random), 0.0, height, weight), 4.0);
+  }
+  EXPECT_GT(rise_after_falls(0.8, 0.0, 0.02, 3e-4), 10.0) << "without viscosity";
 }
 
 TEST(Plan, AddsUpContactsThatTouchOneMassTogether) {
   // Each has K' = 0.499.
   const auto plan_with = [](std::size_t count, int dimension) {
+    StateMachine law = contact(499e3);
+    law.states[0].viscosity = 50.0;
     NetworkDescription scene =
-        mass_on_law(dimension, 1.0, Vec3(1e-5, 0, 0), Vec3::Zero(), contact(499e3), 0.0);
+        mass_on_law(dimension, 1.0, Vec3(1e-5, 0, 0), Vec3::Zero(), law, 0.0);
     scene.state_links.resize(count, scene.state_links[0]);
     return plan_of(scene, 10.0);
   };
@@ -237,7 +280,8 @@ TEST(Plan, NamesTheStepUpToWhichItIsCertain) {
   engine::StateMachine thread = state_machine(2500.0);
   thread.states[0].pushes = false;
   NetworkDescription scene = mass_on_law(2, 0.001, Vec3(0.2, 0, 0), Vec3::Zero(), thread, 0.2);
-  const double at_one = std::sqrt(0.001 / 2500.0);  // K' = 1; certified up to K' = 4
+  const double at_one = std::sqrt(0.001 / 2500.0);  // K' = 1; certified up to K' + 2 Z' = 4
+  scene.state_machines[0].states[0].viscosity = 0.1 * 2500.0 * at_one;
   for (const double part : {0.1, 0.99, 1.01, 1.5, 3.0}) {
     scene.step = part * at_one;
     const plan::Plan plan = plan_of(scene, 10.0);
@@ -334,7 +378,9 @@ TEST(Plan, IsNotCertainOfABendBesideAStiffVibration) {
     return scene;
   };
   const auto holds = [&](double spring, double stop) {
-    return plan_of(scene_at(spring, stop), 1e-3).stability.holds();
+    NetworkDescription scene = scene_at(spring, stop);
+    scene.state_machines[0].states[0].viscosity = 0.1 * stop;  // it takes what touches alone gain
+    return plan_of(scene, 1e-3).stability.holds();
   };
   EXPECT_FALSE(holds(2.6, 0.8));
   EXPECT_GT(largest_excursion(scene_at(2.6, 0.8), 2000), 1e3);

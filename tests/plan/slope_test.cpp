@@ -304,6 +304,27 @@ TEST(Tangent, IsThatOfTheStateOfTheStartWhereItActs) {
 }
 
 /// A corner of a box flips the normal at 0. Deeper than 20 mm the table pulls.
+TEST(Slope, KnowsTheLeastDampingOfWhatLetsGo) {
+  const auto damping_of = [](const StateMachine& machine) {
+    return plan::largest_slope(machine, 0.1, 2, Reach{}).touch_damping;
+  };
+  StateMachine touch = contact(100.0);
+  EXPECT_EQ(damping_of(touch), 0.0);
+  touch.states[0].viscosity = 0.5;
+  EXPECT_DOUBLE_EQ(damping_of(touch), 0.5 / 100.0);
+  touch.states.push_back(touch.states[0]);
+  touch.states[1].viscosity = 0.2;
+  EXPECT_DOUBLE_EQ(damping_of(touch), 0.2 / 100.0);
+  touch.states[1].pulls = true;  // it holds, and never lets go
+  EXPECT_DOUBLE_EQ(damping_of(touch), 0.5 / 100.0);
+  EXPECT_TRUE(std::isinf(damping_of(state_machine(100.0))));
+  StateMachine hertz = contact(0.0);
+  hertz.states[0].elasticity = engine::Power{1e4, 1.5};
+  EXPECT_TRUE(std::isinf(damping_of(hertz)));
+  hertz.states[0].elasticity = engine::Power{1e4, 1.2};
+  EXPECT_EQ(damping_of(hertz), 0.0);
+}
+
 TEST(Slope, OfASurfaceIsNotCertainWhereItPullsDeepWithin) {
   const plan::Reach reach{.elongation = 0.1, .speed = 1.0, .mass_a = {0.01, 0.01}};
   const auto is_certain = [&](double from, double tension) {

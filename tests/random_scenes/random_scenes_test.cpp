@@ -166,6 +166,11 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
       const double share = falling->stiffness / plan::kCertainFall;
       step = std::min(step, part * network.step / std::sqrt(share));
     }
+    const auto undamped = plan::undamped_contact_of(network, graph);
+    if (undamped && undamped->stiffness > plan::kCertainFall) {
+      const double share = undamped->stiffness / plan::kCertainFall;
+      step = std::min(step, part * network.step / std::sqrt(share));
+    }
     constexpr double kShortest = 1e-7;  // [s]: no session is faster
     if (step < kShortest) return std::nullopt;
     const double bend =

@@ -170,6 +170,7 @@ void add_side(const NetworkDescription& network, std::uint32_t index, const Slop
   side.fall = slope.fall;
   side.fall_anywhere = slope.fall_anywhere;
   side.damping_ratio = slope.damping_ratio;
+  side.touch_damping = slope.touch_damping;
   side.at_start = bounds.at_start;
   graph.contacts.push_back(side);
 
@@ -565,6 +566,7 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
                            slope.damping_ratio});
     graph.edges.back().fall = knows_all_energy ? slope.fall : slope.fall_anywhere;
     graph.edges.back().fall_anywhere = slope.fall_anywhere;
+    graph.edges.back().touch_damping = slope.touch_damping;
   }
   for (index = 0; index < network.maxwell_links.size(); ++index)
     add_maxwell_link(network, index, graph);

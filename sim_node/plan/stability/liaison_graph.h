@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,7 @@ struct Edge {
   bool follows = false;        ///< a parameter follows variables: it may be less than it is here
   double fall = 0.0;           ///< Slope::fall [N/m]
   double fall_anywhere = 0.0;  ///< Slope::fall_anywhere [N/m]
+  double touch_damping = std::numeric_limits<double>::infinity();  ///< Slope::touch_damping [s]
 };
 
 /// A driven force on a MAT that depends on its place or velocity, with the largest slopes it can have.
@@ -82,6 +84,7 @@ struct ContactBound {
   bool follows = false;            ///< as Edge::follows
   double fall = 0.0;               ///< as Edge::fall, of one pair [N/m]
   double fall_anywhere = 0.0;      ///< likewise [N/m]
+  double touch_damping = std::numeric_limits<double>::infinity();  ///< as Edge::touch_damping [s]
   bool counted = true;  ///< false: beyond touch_distance(), where nothing is counted in a run
 };
 

@@ -11,6 +11,7 @@
 #include "sim_node/plan/stability/entry.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/meeting_exit.h"
+#include "sim_node/plan/stability/parameter_bounds.h"
 #include "sim_node/plan/stability/slope_fall.h"
 #include "sim_node/plan/stability/stretch.h"
 
@@ -244,6 +245,10 @@ bool acts_at(const engine::LinkState& state, double tension) {
 
 }  // namespace
 
+bool lets_go(const engine::LinkState& state) noexcept {
+  return !state.pulls || !state.pushes || std::holds_alternative<engine::Rings>(state.elasticity);
+}
+
 double damping_ratio(double viscosity, double min_stiffness) noexcept {
   if (!(viscosity > 0.0)) return 0.0;
   return min_stiffness > 0.0 ? viscosity / min_stiffness : std::numeric_limits<double>::infinity();
@@ -307,6 +312,16 @@ double stored_in(const engine::StateMachine& state_machine, const engine::LawPoi
 
 namespace {
 
+/// Slope::touch_damping of one state.
+double touch_damping(const engine::LinkState& state, double stiffness, const Reach& reach) {
+  constexpr double kSmooth = 1.5;  // exponent
+  const auto* power = std::get_if<engine::Power>(&state.elasticity);
+  const bool is_smooth = power != nullptr && power->exponent >= kSmooth && state.stiffness == 0.0;
+  if (!lets_go(state) || is_smooth || !(stiffness > 0.0))
+    return std::numeric_limits<double>::infinity();
+  return std::max(linear_bounds(state, reach).viscosity.low, 0.0) / stiffness;
+}
+
 Slope with_friction(Slope slope, const engine::Friction& friction) noexcept {
   if (!friction.acts()) return slope;
   const double followed = friction.static_coefficient;
@@ -357,6 +372,8 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
     largest.stiffness = std::max(largest.stiffness, slope.stiffness);
     largest.viscosity = std::max(largest.viscosity, slope.viscosity);
     largest.variation = std::max(largest.variation, slope.variation);
+    largest.touch_damping =
+        std::min(largest.touch_damping, touch_damping(state, slope.stiffness, reach));
     const auto fall_within = [&](Interval within) {
       if (dimension > 1) within.low = std::max(within.low, -rest_length);  // ends are never nearer
       return slope_fall(state, rest_length, within, slope.stiffness, here);

@@ -27,6 +27,9 @@ struct Slope {
   /// The most that the viscosity is over the stiffness in one of its states [s]; infinite where one is viscous and may
   /// have no stiffness.
   double damping_ratio = 0.0;
+  /// The least that the viscosity is over the stiffness in one of the states that let go, where the slope jumps as they
+  /// do [s]; infinite where none is so. A power of 1.5 and more begins without a jump.
+  double touch_damping = std::numeric_limits<double>::infinity();
   /// Why nothing bounds them, not even the Reach; null: something does.
   const char* uncertainty = nullptr;
 };
@@ -40,6 +43,9 @@ inline constexpr const char* kMayDriveMotion =
 
 inline constexpr const char* kPassesSurface =
     "a ball may be driven so deep into the surface that the normal flips, and its force jumps";
+
+/// True if a state acts at some distances and not at others.
+bool lets_go(const engine::LinkState& state) noexcept;
 
 /// Slope::damping_ratio of this viscosity and at least this stiffness [s].
 double damping_ratio(double viscosity, double min_stiffness) noexcept;
