@@ -1,4 +1,5 @@
 // tests/scene/formula_of_liaison_test.cpp -- formulas in Maxwell elements, bends and sets.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -138,6 +139,29 @@ TEST(FormulaOfLiaison, OfOneValueIsThatValue) {
               path("stiffness_n_per_m: 60 + 0 * x, viscosity_n_s_per_m: 3 + 0 * time_s, "
                    "start_force_n: 2"),
               1e-13);
+}
+
+TEST(FormulaOfLiaison, KnowsPi) {
+  const Scene scene = sound_scene(1, R"YAML(liaisons:
+  a: {kind: spring, parameters: {turn: 2 * pi}, stiffness_n_per_m: turn * pi}
+  own: {kind: spring, parameters: {pi: 3}, stiffness_n_per_m: 2 * pi}
+  late: {states: {x: {stiffness_n_per_m: 1, viscosity_n_s_per_m: "2 + sin(2 * pi * time_s)",
+                      exits: [{to: y, when: elongation_m > pi / 100}]}, y: {final: true}}}
+matter:
+  m: {kind: mass, mass_kg: 1, at_m: [0, 1]}
+links:
+  - {liaison: a, between: ["m[0]", "m[1]"]}
+  - {liaison: own, between: ["m[0]", "m[1]"]}
+  - {liaison: late, between: ["m[0]", "m[1]"]}
+)YAML");
+  const double pi = std::acos(-1.0);
+  EXPECT_DOUBLE_EQ(scene.network.links[0].stiffness, 2.0 * pi * pi);
+  EXPECT_DOUBLE_EQ(scene.network.links[1].stiffness, 6.0);
+  const auto& machine = scene.network.state_machines[scene.network.state_links[0].state_machine];
+  const auto& condition = machine.exits[0].when.code;
+  EXPECT_TRUE(std::ranges::any_of(condition, [pi](const engine::Instruction& each) {
+    return each.constant == pi / 100.0;
+  }));
 }
 
 /// Two fixed points and a mass of 0.1 kg at a height, on a bend, in 1 dimension.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "node/config/key_log.h"
@@ -142,10 +143,12 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
         if (compiled.first == engine::Quantity::kNone) compiled.first = known->quantity;
         continue;
       }
-      const std::optional<double> value = parameters.find(word.name);
+      std::optional<double> value = parameters.find(word.name);
+      if (!value && word.name == kPiWord) value = std::numbers::pi;
       if (!value) {
         std::vector<std::string> words = parameters.names();
         for (std::string& known : quantity_words_of(owner)) words.push_back(std::move(known));
+        words.emplace_back(kPiWord);
         if (outside != nullptr) {
           words.insert(words.end(), outside->signals.begin(), outside->signals.end());
           words.emplace_back(kTimeWord);

@@ -15,8 +15,6 @@ namespace {
 using config::Problems;
 using config::Value;
 
-constexpr double kPi = 3.14159265358979323846;
-
 const FormulaName* name_called(std::span<const FormulaName> names, const std::string& word) {
   const auto found =
       std::ranges::find_if(names, [&word](const FormulaName& name) { return word == name.word; });
@@ -53,18 +51,18 @@ bool put_names(Expression& formula, const std::string& what, std::span<const For
         word.name = word_of(name->place);
       } else if (parameters.find(word.name)) {
         continue;
-      } else if (word.name == "pi") {
+      } else if (word.name == kPiWord) {
         word.kind = ExpressionWord::Kind::kNumber;
-        word.number = kPi;
+        word.number = std::numbers::pi;
       } else if (!is_signal(word.name)) {
         std::vector<std::string> words = parameters.names();
         for (const FormulaName& other : names) words.emplace_back(other.word);
-        words.emplace_back("pi");
+        words.emplace_back(kPiWord);
         if (outside != nullptr)
           words.insert(words.end(), outside->signals.begin(), outside->signals.end());
         const std::string hint = config::did_you_mean(word.name, words);
         problems.error(formula.place_of(word), what + " cannot ask for '" + word.name + "'",
-                       hint.empty() ? "it may ask for " + list_of(names) + "pi" +
+                       hint.empty() ? "it may ask for " + list_of(names) + kPiWord +
                                           (outside == nullptr ? " and its parameters"
                                                               : ", its parameters and signals")
                                     : hint);
@@ -134,7 +132,7 @@ ParameterValues read_formula_parameters(config::MappingReader& reader,
                                         const std::string& formulas, Problems& problems) {
   ParameterValues parameters(reader.optional_mapping("parameters"), {}, nullptr, reader.what(),
                              problems);
-  std::vector<std::string> taken{"pi"};
+  std::vector<std::string> taken{kPiWord};
   for (const FormulaName& name : names) taken.emplace_back(name.word);
   for (const std::string& word : taken) {
     if (!parameters.find(word)) continue;

@@ -47,6 +47,9 @@ inline constexpr const char* kNormalForceWord = "normal_force_n";
 /// The time since the start, in conditions and in functions of time [s].
 inline constexpr const char* kTimeWord = "time_s";
 
+/// The circumference of a circle over its diameter, in all formulas. A parameter of that name comes first.
+inline constexpr const char* kPiWord = "pi";
+
 /// nullptr when there is none of that name. Of kNormalForceWord that it is found from.
 constexpr const QuantityName* find_quantity(std::string_view word) noexcept {
   if (word == kNormalForceWord) word = "force_n";
