@@ -73,7 +73,11 @@ int check_take(const CheckOptions& options, const PutJson& put_json) {
 int check_file(const CheckOptions& options, const PutJson& put_json) {
   if (!options.text && is_take(options.file)) return check_take(options, put_json);
   const SceneCheck check = check_scene_and_nodes(options);
-  if (options.json_file != "-") node::print_text(stdout, text_of(check));
+  if (options.json_file != "-") {
+    node::print_text(stdout, text_of(check));
+    if (check.launch && options.text && !options.plan_alone)
+      std::puts("nodes       not asked: the files of devices are checked with a launch FILE alone");
+  }
   put_json(json_of(check));
   const std::string problems = check.problems.text();
   std::fflush(stdout);
@@ -182,8 +186,8 @@ void add_check_verb(CommandLine& line) {
       "states (docs/stability.md). A scene with `accuracy` and without a rate gets its rate here.\n"
       "What `cordis run` would refuse or warn of stands below the report, in the same words.\n"
       "Every CRC, index and count of a take is checked; it says at which byte what is wrong.\n"
-      "Paths in a file on standard input begin in the present folder; of a launch file there the\n"
-      "scene and its devices are checked, and no other nodes.\n"
+      "Paths in a file on standard input begin in the present folder. Of a launch file there the\n"
+      "scene is checked with what its ports ask of devices; the nodes check no file of theirs.\n"
       "Exit code: 0 `cordis run` plays it, in lockstep once all its devices have joined, or the\n"
       "take is whole, 1 a check failed itself,\n"
       "2 `cordis run` refuses it, or the take is damaged; of several files the highest.\n\n"

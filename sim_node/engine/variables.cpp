@@ -49,6 +49,7 @@ double value_of_state_link(const Variable& variable, const World& world) noexcep
 }
 
 double value_of_maxwell_link(const Variable& variable, const World& world) noexcept {
+  if (variable.quantity == VariableKind::kTension) return world.tension_of_maxwell(variable.index);
   const MaxwellLink& link = world.network().description().maxwell_links[variable.index];
   const Stretch stretch = stretch_of(link.mat_a, link.mat_b, world);
   return variable.quantity == VariableKind::kDistance ? stretch.distance : stretch.elongation_rate;

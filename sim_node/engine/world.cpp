@@ -186,6 +186,11 @@ double World::tension_of(std::uint32_t state_link) const noexcept {
   return state_->state_links.tension(state_link);
 }
 
+double World::tension_of_maxwell(std::uint32_t maxwell_link) const noexcept {
+  CORDIS_ASSERT(maxwell_link < network().description().maxwell_links.size());
+  return state_->maxwell_links.tension(maxwell_link);
+}
+
 std::uint64_t World::change_count(std::uint32_t state_machine, std::uint32_t from,
                                   std::uint32_t to) const noexcept {
   return state_->log.change_count(state_machine, from, to);

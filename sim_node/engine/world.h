@@ -109,6 +109,9 @@ class World {
   double age_of(std::uint32_t state_link) const noexcept;
   /// Tension of the link in the last step [N], positive pulls the ends together; 0 before the first.
   double tension_of(std::uint32_t state_link) const noexcept;
+  /// Tension of a Maxwell element in the last step [N], likewise; before the first its start force, less what
+  /// velocities of the start add to it in a step.
+  double tension_of_maxwell(std::uint32_t maxwell_link) const noexcept;
   /// State of a bend, as state_of() of a link. Precondition of this and the next three: it has states.
   std::uint32_t state_of_bend(std::uint32_t bend) const noexcept;
   double age_of_bend(std::uint32_t bend) const noexcept;         ///< [s]

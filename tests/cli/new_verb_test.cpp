@@ -14,6 +14,7 @@
 #include "cli/exit_code.h"
 #include "cli/verbs.h"
 #include "tests/cli/captured_run.h"
+#include "tests/support/filled.h"
 
 namespace cordis::cli {
 namespace {
@@ -179,6 +180,19 @@ TEST_F(ManyChecked, OneMayStandOnStandardInput) {
   EXPECT_EQ(run({"check", folder_ / "good.yaml", "-", "--plan"}), kBadInput);
   EXPECT_NE(error_.find("-:4:1: error: unknown key 'mater' in scene"), std::string::npos) << error_;
   EXPECT_EQ(run({"check", "-", "-"}), kBadInput);
+}
+
+TEST_F(ManyChecked, ALaunchFileOnStandardInputSaysThatItsNodesAreNotAsked) {
+  std::ofstream(folder_ / "launch.yaml") << test::filled(R"(cordis: 1
+session: good
+clock: realtime
+nodes:
+  sim: {node: sim_node, scene: <scene>}
+)",
+                                                         {{"scene", folder_ / "good.yaml"}});
+  ASSERT_NE(std::freopen((folder_ / "launch.yaml").c_str(), "r", stdin), nullptr);
+  EXPECT_EQ(run({"check", "-"}), kSuccess) << error_;
+  EXPECT_NE(out_.find("\nnodes       not asked"), std::string::npos) << out_;
 }
 
 }  // namespace

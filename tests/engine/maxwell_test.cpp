@@ -67,6 +67,7 @@ TEST(Maxwell, DecaysByTheExactFactorFromStepToStep) {
 
   const double exact = std::exp(-parameter("K2") * 1e-3 / parameter("Z") * 500);
   EXPECT_NEAR(world.link_force(0).x() / first / exact, 1.0, 1e-12);
+  EXPECT_EQ(world.tension_of_maxwell(0), world.link_force(0).x()) << "above 0 it pulls";
 }
 
 TEST(Maxwell, LosesPerCycleWhatItsLossModulusSays) {

@@ -181,6 +181,7 @@ TEST(Variable, OfEveryKindHasTheValueAtTheEndOfTheStepBefore) {
       {"key.force_n", [](const World& w) { return w.link_force(kKey).y(); }},
       {"spring.distance_m", [&](const World& w) { return distance(w, 0, 1); }},
       {"soft.distance_m", [&](const World& w) { return distance(w, 1, 2); }},
+      {"soft.force_n", [](const World& w) { return w.tension_of_maxwell(0); }},
       {"jumper.elongation_m",
        [&](const World& w) { return distance(w, kKey, 2) - w.rest_length_of(0); }},
       {"jumper.rest_length_m", [](const World& w) { return w.rest_length_of(0); }},

@@ -159,9 +159,8 @@ links:
   EXPECT_DOUBLE_EQ(scene.network.links[1].stiffness, 6.0);
   const auto& machine = scene.network.state_machines[scene.network.state_links[0].state_machine];
   const auto& condition = machine.exits[0].when.code;
-  EXPECT_TRUE(std::ranges::any_of(condition, [pi](const engine::Instruction& each) {
-    return each.constant == pi / 100.0;
-  }));
+  EXPECT_TRUE(std::ranges::any_of(
+      condition, [pi](const engine::Instruction& each) { return each.constant == pi / 100.0; }));
 }
 
 /// Two fixed points and a mass of 0.1 kg at a height, on a bend, in 1 dimension.

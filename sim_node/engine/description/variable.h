@@ -23,7 +23,7 @@ enum class VariableKind : std::uint8_t {
   kElongation,      ///< distance less rest length [m]
   kElongationRate,  ///< rate of the distance, over the last step [m/s]
   kTension,         ///< linear link: K elongation + Z elongation rate, of the present positions;
-  ///< link with states: its tension in the last step; positive pulls the ends together [N]
+  ///< link with states, Maxwell element: its tension in the last step; positive pulls the ends together [N]
   kState,       ///< number of the state of a link, in the order of the file
   kRestLength,  ///< present rest length of a link with states [m]
   kAge,         ///< time since a link with states entered its state [s]

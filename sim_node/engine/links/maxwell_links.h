@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "node/assert.h"
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
@@ -58,6 +59,11 @@ class MaxwellArray {
   /// Work of the forces of the last call up to the present positions. Real time: O(elements), no
   /// allocation.
   StepEnergy work_since_last_call(const MatArray& mats) const noexcept;
+  /// Tension of an element at the last call, before the first one that of its start [N]; above 0 it pulls.
+  double tension(std::uint32_t element) const noexcept {
+    CORDIS_ASSERT(element < rows_.row_of_link.size());
+    return tension_[rows_.row_of_link[element]];
+  }
   /// Energy in the springs of the elements at the last call [J].
   double stored_energy() const noexcept;
 

@@ -9,7 +9,7 @@ namespace {
 
 using engine::VariableKind;
 
-constexpr std::array<QuantityWord, 47> kWords{{
+constexpr std::array<QuantityWord, 48> kWords{{
     {"position", Owner::kMat, VariableKind::kPosition, "m", true},
     {"velocity", Owner::kMat, VariableKind::kVelocity, "m/s", true},
     {"force", Owner::kMat, VariableKind::kForce, "N", true},
@@ -29,6 +29,7 @@ constexpr std::array<QuantityWord, 47> kWords{{
     {"bonds", Owner::kStateLink, VariableKind::kBonds, "", false},
     {"distance", Owner::kMaxwellLink, VariableKind::kDistance, "m", false},
     {"speed", Owner::kMaxwellLink, VariableKind::kElongationRate, "m/s", false},
+    {"force", Owner::kMaxwellLink, VariableKind::kTension, "N", false},
     {"angle", Owner::kBend, VariableKind::kAngle, "rad", false},
     {"bend", Owner::kBend, VariableKind::kBendAngle, "rad", false},
     {"speed", Owner::kBend, VariableKind::kAngularSpeed, "rad/s", false},
