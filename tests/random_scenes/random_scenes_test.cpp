@@ -144,6 +144,8 @@ double bend_of(const NetworkDescription& network) {
   return std::max(contact ? contact->stiffness : 0.0, varying ? varying->stiffness : 0.0);
 }
 
+constexpr double kShortest = 1e-7;  // [s]: no session is faster
+
 /// The network at this part of the step that is certified for it, or none where nothing is.
 std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double part) {
   NetworkDescription network = scene.network;
@@ -171,7 +173,6 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
       const double share = undamped->stiffness / plan::kCertainFall;
       step = std::min(step, part * network.step / std::sqrt(share));
     }
-    constexpr double kShortest = 1e-7;  // [s]: no session is faster
     if (step < kShortest) return std::nullopt;
     const double bend =
         std::max(contact ? contact->stiffness : 0.0, varying ? varying->stiffness : 0.0);
@@ -183,6 +184,11 @@ std::optional<NetworkDescription> certified_at(const scene::Scene& scene, double
     }
     network.step = step;
   }
+  const plan::Stability stability = stability_of(network);
+  if (stability.holds()) return network;
+  // The longer the step, the more contacts have too little viscosity for it: no step above says which is the longest.
+  network.step = part * plan::certain_step_of(network, plan::liaison_graph(network), stability);
+  if (network.step < kShortest) return std::nullopt;
   return stability_of(network).holds() ? std::optional(network) : std::nullopt;
 }
 
