@@ -146,8 +146,8 @@ struct MemberValues {
 
 /// Sums of forces times displacements [J], by the number of the member modulo 4.
 struct MemberWorks {
-  double all[4] = {};
-  double viscous[4] = {};
+  alignas(32) double all[4] = {};
+  alignas(32) double viscous[4] = {};
 };
 
 /// Takes the positions of members whose MATs follow one another, and adds what their forces have done.
@@ -249,6 +249,22 @@ using LennardJonesParts = void (*)(const LennardJonesPair& pair, const MemberCol
                                    const PartsOfRows& parts, const PairRow& row,
                                    double* force) noexcept;
 
+struct ForceColumns;
+struct PlaneBalls;
+struct PlaneRow;
+struct PlaneSum;
+struct PlaneWorks;
+
+/// Takes the positions of the balls of a set that are listed with planes, and adds what their last forces
+/// have done. Finds the forces of the balls and of the planes, and gives the balls theirs. Pairs sum up as
+/// SpreadRows does it; their vectors are the normals.
+/// @param mats     columns of the MATs
+/// @param members  MemberValues::moved is not used
+/// @param sums     of each plane, empty; they are emptied
+using StepPlanes = void (*)(const LinearPair& pair, const PlaneRow* planes, const PlaneBalls& balls,
+                            const ForceColumns& mats, const MemberValues& members, PlaneSum* sums,
+                            PlaneWorks& works) noexcept;
+
 /// The loops of one width.
 struct PairKernel {
   FindNear find_near = nullptr;
@@ -266,6 +282,7 @@ struct PairKernel {
   LennardJonesRows lennard_jones_rows = nullptr;
   SpreadToLater spread_to_later = nullptr;
   LennardJonesParts lennard_jones_parts = nullptr;
+  StepPlanes step_planes = nullptr;
 };
 
 extern const PairKernel kPairKernelSse2;

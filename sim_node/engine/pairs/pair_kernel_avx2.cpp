@@ -1,6 +1,6 @@
 // sim_node/engine/pairs/pair_kernel_avx2.cpp -- four pairs in a register. Compiled with -mavx2,
 // without FMA.
-#include "sim_node/engine/pairs/pair_kernel_body.h"
+#include "sim_node/engine/pairs/make_pair_kernel.h"
 #include "sim_node/engine/simd/pair_lanes_avx2.h"
 
 namespace cordis::engine {

@@ -96,6 +96,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
       range_(description.sets[index].range),
       share_(partner_share(description, description.sets[index])),
       surfaces_(description, description.sets[index], kernel),
+      planes_(description, description.sets[index]),
       neighbours_(
           surfaces_.empty() ? count_p_ : 1,
           surfaces_.empty() ? description.sets[index].set_q.size() : 1, description.dimension,
@@ -259,9 +260,36 @@ PairRest SetPairs::rest() const noexcept {
 
 StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns,
                                 ThreadTeam* team) noexcept {
+  if (takes_balls_at_once(columns)) return add_plane_forces(columns);
   StepEnergy energy = take_positions(columns, team);
   refresh(team);
   energy += add_pair_forces(step, columns, team);
+  return energy;
+}
+
+/// True if all that a step does is in PlaneContacts. Takes the positions of the planes.
+bool SetPairs::takes_balls_at_once(const ForceColumns& columns) noexcept {
+  if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || friction_.acts() ||
+      !contacts_.empty() || !active_.are_all())
+    return false;
+  bool moves = false;
+  for (std::size_t m = 0; m < count_p_; ++m) {
+    take_position(m, columns);
+    moves = moves || !Vec3::Map(moved_.data() + 4 * m).isZero(0.0);
+  }
+  return !moves;
+}
+
+/// The planes do not move, so their forces do no work.
+StepEnergy SetPairs::add_plane_forces(const ForceColumns& columns) noexcept {
+  measure_due(columns.position, column_, /*may_leave=*/true, [](std::size_t) {});
+  const PlaneWorks works = planes_.step(kernel_, linear_, surfaces_, columns, values_from(0));
+  surfaces_.renew_batches();
+  for (std::size_t m = 0; m < count_p_; ++m) give_force(m, columns);
+  const auto partners = static_cast<std::uint32_t>(std::ceil(works.partners));
+  largest_partners_.of_q = std::max(largest_partners_.of_q, partners);
+  StepEnergy energy = energy_of(works.last);
+  energy += energy_of(works.now);
   return energy;
 }
 
@@ -681,6 +709,7 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
     });
     return work;
   }
+  list_surfaces();  // as the last step left them
   const StepEnergy work =
       take_visited(columns, [this](auto one, auto run) { visit_runs(one, run); });
   measure_surfaces(columns.position, column_, /*may_leave=*/true);
@@ -690,10 +719,10 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
 }
 
 /// Measures the balls that have come too far since they were measured.
-/// @param position   columns of 4 values; member m is at position[column[m]]
-/// @param may_leave  what is too far away is listed no longer, and its forces are forgotten
-void SetPairs::measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
-                                bool may_leave) noexcept {
+/// @param position  columns of 4 values; member m is at position[column[m]]
+template <class Visit>
+void SetPairs::measure_due(const double* position, const std::vector<std::uint32_t>& column,
+                           bool may_leave, Visit visit_far) noexcept {
   surfaces_.follow(position, column);
   surfaces_.visit_due(position, column, [&](std::size_t ball) {
     const std::size_t m = count_p_ + ball;
@@ -702,11 +731,19 @@ void SetPairs::measure_surfaces(const double* position, const std::vector<std::u
       return state_machines_.is_bound(surface, own) ||
              (!may_leave && surfaces_.is_listed(ball, surface));
     });
-    if (!surfaces_.is_far(ball)) return;
-    std::fill_n(force_.begin() + std::ptrdiff_t{own}, 4, 0.0);
-    std::fill_n(viscous_.begin() + std::ptrdiff_t{own}, 4, 0.0);
+    if (surfaces_.is_far(ball)) visit_far(m);
   });
-  surfaces_changed_ = surfaces_.list() || surfaces_changed_;
+}
+
+/// Likewise, and lists the pairs. The forces of what is far are forgotten.
+void SetPairs::measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
+                                bool may_leave) noexcept {
+  measure_due(position, column, may_leave, [this](std::size_t m) {
+    const auto own = static_cast<std::ptrdiff_t>(4 * m);
+    std::fill_n(force_.begin() + own, 4, 0.0);
+    std::fill_n(viscous_.begin() + own, 4, 0.0);
+  });
+  list_surfaces();
 }
 
 void SetPairs::clear_forces() noexcept {
@@ -910,6 +947,7 @@ SetPairs::Potential SetPairs::potential(
     }
   };
   if (!surfaces_.empty()) {
+    list_surfaces();
     for (std::size_t a = 0; a < count_p_; ++a) add_row(surfaces_.rows(), a);
     return sum;
   }

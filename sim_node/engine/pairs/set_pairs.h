@@ -26,6 +26,7 @@
 #include "sim_node/engine/pairs/pair_friction.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/pair_state_machines.h"
+#include "sim_node/engine/pairs/plane_contacts.h"
 #include "sim_node/engine/pairs/row_shares.h"
 #include "sim_node/engine/pairs/surface_neighbours.h"
 
@@ -36,7 +37,8 @@ namespace cordis::engine {
 ///
 /// Where the first set is surfaces, a pair is a ball and its nearest point of the surface: the distance
 /// has the sign of SurfaceDistance, and the line of centres is the normal. What is far from all
-/// surfaces is compared with its free way once a step, and costs nothing else.
+/// surfaces is compared with its free way once a step, and costs nothing else. Balls on planes that stand
+/// still take one pass where PlaneContacts can take it.
 ///
 /// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
 /// in range in the order given, by their place in batches of 8. So the sum is the same bits for
@@ -217,8 +219,16 @@ class SetPairs {
                                 std::size_t candidates) noexcept;
   void take_position(std::size_t member, const ForceColumns& columns) noexcept;
   void add_work(std::size_t member, MemberWorks& sum) const noexcept;
+  /// @param may_leave  what is too far away is listed no longer
+  /// @param visit_far  is given every ball that was measured and is far from all surfaces, as member
+  template <class Visit>
+  void measure_due(const double* position, const std::vector<std::uint32_t>& column, bool may_leave,
+                   Visit visit_far) noexcept;
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
+  void list_surfaces() noexcept { surfaces_changed_ = surfaces_.list() || surfaces_changed_; }
+  bool takes_balls_at_once(const ForceColumns& columns) noexcept;
+  StepEnergy add_plane_forces(const ForceColumns& columns) noexcept;
   void pad_at_surfaces() noexcept;
   /// Pairs that are alike where they come into range.
   struct AlikeAtRange {
@@ -271,6 +281,7 @@ class SetPairs {
   LennardJonesPair lennard_jones_;
   SurfaceNeighbours surfaces_;
   bool surfaces_changed_ = false;  // since the last refresh()
+  PlaneContacts planes_;           // empty unless all surfaces are planes
   NeighbourList neighbours_;       // empty where there are surfaces
   std::size_t known_builds_ = 0;   // of the neighbour list, at the last refresh()
   PairBlock block_;

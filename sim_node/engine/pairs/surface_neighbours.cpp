@@ -49,6 +49,10 @@ SurfaceNeighbours::SurfaceNeighbours(const NetworkDescription& network, const Se
   fill_.resize(shapes_.size() + 1, 0);
   neighbour_.resize(balls * shapes_.size() + kPairBatch, 0U);
   members_.reserve(balls);
+  if (shapes_.size() > kMaxOfBatches) return;
+  const std::size_t batches = padded(shapes_.size() + balls, kPairBatch) / kPairBatch;
+  surfaces_of_batch_.resize(batches, 0);
+  balls_of_batch_.resize(batches, 0);
 }
 
 void SurfaceNeighbours::follow(const double* position,
@@ -87,12 +91,14 @@ double SurfaceNeighbours::begin_measure(std::size_t ball, const double* place) n
 void SurfaceNeighbours::end_measure(std::size_t ball, const double* place,
                                     double free_way) noexcept {
   double farthest = farthest_;
+  bool is_finite = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     farthest = std::max(farthest, std::abs(place[axis]));
+    is_finite = is_finite && std::isfinite(place[axis]);
   }
   const double sure =
       free_way - kFreeWayMargin * (std::isinf(free_way) ? 0.0 : farthest + free_way);
-  free_way_[ball] = sure > 0.0 ? sure + way_ : -1.0;
+  free_way_[ball] = sure > 0.0 && is_finite ? sure + way_ : -1.0;
   min_free_way_[ball / kChunk] = -1.0;
 }
 
@@ -100,6 +106,7 @@ bool SurfaceNeighbours::stays(std::size_t ball, std::size_t count, const double*
   double& minimum = min_free_way_[ball / kChunk];
   const auto first = free_way_.begin() + static_cast<std::ptrdiff_t>(ball);
   if (minimum < 0.0) minimum = *std::min_element(first, first + static_cast<std::ptrdiff_t>(count));
+  if (minimum == kEndless) return true;  // every surface is listed with each ball
   return kernel_->largest_move(places, from_.data() + 4 * ball, count) <
          square_of_rest(minimum) * (1.0 - kFreeWayMargin);
 }
@@ -110,7 +117,18 @@ bool SurfaceNeighbours::is_far(std::size_t ball) const noexcept {
                      [](std::uint64_t word) { return word == 0; });
 }
 
+void SurfaceNeighbours::renew_batches() noexcept {
+  if (!std::exchange(has_left_, false) || surfaces_of_batch_.empty()) return;
+  std::fill(surfaces_of_batch_.begin(), surfaces_of_batch_.end(), 0);
+  std::fill(balls_of_batch_.begin(), balls_of_batch_.end(), 0);
+  for (std::size_t ball = 0; ball < free_way_.size(); ++ball) {
+    for (std::uint64_t left = listed_[ball]; left != 0; left &= left - 1)
+      enter_batch(ball, static_cast<std::size_t>(std::countr_zero(left)));
+  }
+}
+
 bool SurfaceNeighbours::list() noexcept {
+  renew_batches();
   if (!std::exchange(changed_, false)) return false;
   const std::size_t surfaces = shapes_.size();
   const auto visit = [&](auto take) {

@@ -9,6 +9,7 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/description/network.h"
 #include "sim_node/engine/pairs/pair_kernel.h"
+#include "sim_node/engine/pairs/plane_kernel.h"
 
 namespace cordis::engine {
 
@@ -96,8 +97,15 @@ class SurfaceNeighbours {
   void forget() noexcept;
 
   /// Lists the pairs after balls have been measured. Real time: O(balls + pairs), if any pair came or
-  /// went. @return false when none did
+  /// went since the last call. @return false when none did
   bool list() noexcept;
+  /// Where there are kMaxOfBatches surfaces or fewer; else none.
+  ListedBatches batches() const noexcept {
+    return {surfaces_of_batch_.data(), balls_of_batch_.data(), surfaces_of_batch_.size()};
+  }
+  /// Takes what is listed no longer out of the batches. list() does so too. Real time: O(balls), if any pair
+  /// went.
+  void renew_batches() noexcept;
 
   /// All of them.
   NeighbourRows rows() const noexcept {
@@ -121,8 +129,20 @@ class SurfaceNeighbours {
     std::uint64_t& word = listed_[ball * words_ + surface / kBits];
     const std::uint64_t bit = std::uint64_t{1} << (surface % kBits);
     const std::uint64_t next = is_listed ? word | bit : word & ~bit;
-    changed_ = changed_ || next != word;
+    if (next == word) return;
     word = next;
+    changed_ = true;
+    if (is_listed) {
+      enter_batch(ball, surface);
+    } else {
+      has_left_ = true;
+    }
+  }
+  void enter_batch(std::size_t ball, std::size_t surface) noexcept {
+    if (surfaces_of_batch_.empty()) return;
+    const std::size_t member = shapes_.size() + ball;
+    surfaces_of_batch_[member / kPairBatch] |= std::uint64_t{1} << surface;
+    balls_of_batch_[member / kPairBatch] |= static_cast<std::uint8_t>(1U << member % kPairBatch);
   }
   void end_measure(std::size_t ball, const double* place, double free_way) noexcept;
   /// Balls that are compared at once from this one on; 0 where each is compared by itself.
@@ -151,7 +171,10 @@ class SurfaceNeighbours {
   std::vector<std::size_t> fill_;         // by row
   std::vector<std::uint32_t> neighbour_;  // columns
   std::vector<std::uint32_t> members_;
-  bool changed_ = false;
+  bool changed_ = false;                          // since list()
+  std::vector<std::uint64_t> surfaces_of_batch_;  // see ListedBatches
+  std::vector<std::uint8_t> balls_of_batch_;
+  bool has_left_ = false;  // a pair, since renew_batches()
 };
 
 }  // namespace cordis::engine

@@ -43,6 +43,16 @@ struct Avx2PairLanes : Avx2Lanes {
     subtract_column(columns + offset[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
     subtract_column(columns + offset[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
   }
+  static void store_columns(double* columns, const Row3& v, Row w) noexcept {
+    const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
+    const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
+    const Row even_z = _mm256_unpacklo_pd(v.z, w);
+    const Row odd_z = _mm256_unpackhi_pd(v.z, w);
+    store(columns, _mm256_permute2f128_pd(even_xy, even_z, 0x20));
+    store(columns + 4, _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
+    store(columns + 8, _mm256_permute2f128_pd(even_xy, even_z, 0x31));
+    store(columns + 12, _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
+  }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
     // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7 of each

@@ -38,6 +38,16 @@ struct Avx512PairLanes : Avx512Lanes {
     subtract_column(columns + offset[6], _mm512_extractf64x4_pd(c26, 1));
     subtract_column(columns + offset[7], _mm512_extractf64x4_pd(c37, 1));
   }
+  static void store_columns(double* columns, const Row3& v, Row w) noexcept {
+    const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
+    const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
+    const Row even_z = _mm512_unpacklo_pd(v.z, w);
+    const Row odd_z = _mm512_unpackhi_pd(v.z, w);
+    store_two(columns, columns + 16, first_pairs(even_xy, even_z));
+    store_two(columns + 4, columns + 20, first_pairs(odd_xy, odd_z));
+    store_two(columns + 8, columns + 24, second_pairs(even_xy, even_z));
+    store_two(columns + 12, columns + 28, second_pairs(odd_xy, odd_z));
+  }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
     // lanes 0 + 4, 1 + 5, 2 + 6 and 3 + 7 of each
@@ -55,6 +65,10 @@ struct Avx512PairLanes : Avx512Lanes {
   }
 
  private:
+  static void store_two(double* low, double* high, Row v) noexcept {
+    store_column(low, _mm512_castpd512_pd256(v));
+    store_column(high, _mm512_extractf64x4_pd(v, 1));
+  }
   static Column sum_halves(Row v) noexcept {
     return _mm512_castpd512_pd256(v) + _mm512_extractf64x4_pd(v, 1);
   }

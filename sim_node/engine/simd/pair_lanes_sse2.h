@@ -22,6 +22,10 @@ struct Sse2PairLanes : Sse2Lanes {
     store_column(columns + offset[0], load_column(columns + offset[0]) - first);
     store_column(columns + offset[1], load_column(columns + offset[1]) - second);
   }
+  static void store_columns(double* columns, const Row3& v, Row w) noexcept {
+    store_column(columns, {_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, w)});
+    store_column(columns + 4, {_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, w)});
+  }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
     return {sum_lanes(quarters(x), quarters(y)), sum_lanes(quarters(z), quarters(w))};

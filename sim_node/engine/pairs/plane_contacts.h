@@ -1,0 +1,44 @@
+// sim_node/engine/pairs/plane_contacts.h -- balls on planes, in one pass over the balls.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim_node/engine/core/aligned_vector.h"
+#include "sim_node/engine/description/network.h"
+#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
+#include "sim_node/engine/pairs/plane_kernel.h"
+#include "sim_node/engine/pairs/surface_neighbours.h"
+
+namespace cordis::engine {
+
+/// The pairs of a set between planes with one side and balls, whose contact is one spring and one damper
+/// without friction. Each batch of 8 balls is taken once: places, pairs with all planes near it, works and
+/// forces. The bits are those of the steps for any surface, which take each of these by itself.
+class PlaneContacts {
+ public:
+  /// Empty unless the set acts on planes with one side alone, kMaxOfBatches at most.
+  PlaneContacts(const NetworkDescription& network, const SetLiaison& set);
+
+  bool empty() const noexcept { return planes_.empty(); }
+
+  /// Takes the positions of the balls that are listed, and gives them the forces of this step. Writes the
+  /// forces of the planes to their members alone.
+  /// Real time: O(balls that are listed * planes near them), no allocation.
+  /// Preconditions: it is not empty; no plane moves in this step; `surfaces` is measured for these positions.
+  /// @param members  of the set, with the moves of the planes
+  PlaneWorks step(const PairKernel& kernel, const LinearPair& pair,
+                  const SurfaceNeighbours& surfaces, const ForceColumns& columns,
+                  const MemberValues& members) noexcept;
+
+ private:
+  double range_ = 0.0;                   // [m]
+  std::vector<PlaneRow> planes_;         // of each surface
+  std::vector<PlaneSum> sums_;           // likewise, empty between steps
+  AlignedVector<std::uint32_t> column_;  // of the MAT of each member, padded
+  AlignedVector<double> radius_;  // of each member, padded; empty when the rest length is given [m]
+  AlignedVector<double> is_mass_;  // of each member, padded: 1 or 0
+};
+
+}  // namespace cordis::engine

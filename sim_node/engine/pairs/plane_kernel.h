@@ -1,0 +1,63 @@
+// sim_node/engine/pairs/plane_kernel.h -- the loop over balls near planes, for each vector width.
+//
+// As in pair_kernel.h, nothing here has a member function.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
+
+namespace cordis::engine {
+
+/// Surfaces of a set of which batches are known at most: a word has a bit for each.
+inline constexpr std::size_t kMaxOfBatches = 64;
+
+/// A plane with one side, and the contact of a ball with it.
+struct PlaneRow {
+  double normal[3] = {};
+  double centre[3] = {};     // [m]
+  double moved = 0.0;        // of the plane along its normal, x(n) - x(n-1) [m]
+  double rest_length = 0.0;  // [m]; where balls have radii, the part of the plane
+};
+
+/// What the pairs of a plane give to it: their sums by the place in the batch, and the factors of pairs
+/// that are yet to be added.
+struct alignas(64) PlaneSum {
+  static constexpr std::size_t kRoom = 64;  // of factors, whole batches
+  double factor[kRoom + 2 * kPairBatch];
+  double viscous_factor[kRoom + 2 * kPairBatch];
+  double force[4][kPairBatch];  // x, y, z and less the partners
+  double viscous[4][kPairBatch];
+  std::size_t count;  // of factors
+};
+
+/// Members of a set in batches of 8. What has been listed since the last step, and is no longer, counts too.
+struct ListedBatches {
+  const std::uint64_t* surfaces =
+      nullptr;  // of each batch: bits of those that a ball of it is listed with
+  const std::uint8_t* balls =
+      nullptr;  // of each batch: bits of balls that are listed with a surface
+  std::size_t count = 0;
+};
+
+/// Members of a set, whose first ones are planes and the rest balls; arrays 64-byte aligned, padded to whole
+/// batches.
+struct PlaneBalls {
+  const std::uint32_t* column = nullptr;  // of the MAT of each member; of padding, that of any ball
+  const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
+  const double* is_mass = nullptr;  // of each member: 1 or 0
+  ListedBatches batches;
+  std::size_t plane_count = 0;
+  double range = 0.0;  // [m]
+};
+
+/// What one step of such a set has done.
+struct PlaneWorks {
+  MemberWorks last;       // by the forces of the last step
+  MemberWorks now;        // and by those of this one
+  double partners = 0.0;  // of a mass among the balls, at most
+};
+
+}  // namespace cordis::engine

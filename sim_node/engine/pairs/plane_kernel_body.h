@@ -1,0 +1,263 @@
+// sim_node/engine/pairs/plane_kernel_body.h -- the loop over balls near planes, written once over the vector
+// registers of each width.
+//
+// `Lanes` is a type of SimdPairLanes.
+#pragma once
+
+#include "sim_node/engine/matter/step_kernel.h"
+#include "sim_node/engine/pairs/pair_kernel_body.h"
+#include "sim_node/engine/pairs/plane_kernel.h"
+
+namespace cordis::engine {
+
+/// A vector in all lanes.
+template <class Lanes>
+typename Lanes::Row3 every(const double* vector) noexcept {
+  return {Lanes::every(vector[0]), Lanes::every(vector[1]), Lanes::every(vector[2])};
+}
+
+/// The vectors of the lanes of a mask, 0 in the others.
+template <class Lanes>
+typename Lanes::Row3 only(typename Lanes::Mask mask, const typename Lanes::Row3& v) noexcept {
+  return {Lanes::select(mask, v.x, Lanes::zero()), Lanes::select(mask, v.y, Lanes::zero()),
+          Lanes::select(mask, v.z, Lanes::zero())};
+}
+
+/// Forces on a register of balls, and less their partners.
+template <class Lanes>
+struct ForcesOnBalls {
+  typename Lanes::Row3 force{Lanes::zero(), Lanes::zero(), Lanes::zero()};
+  typename Lanes::Row partners = Lanes::zero();
+};
+
+/// Takes factor * normal from the forces; a factor that is 0 counts for no partner.
+template <class Lanes>
+void take_pairs(const typename Lanes::Row3& normal, typename Lanes::Row factor,
+                ForcesOnBalls<Lanes>& on) noexcept {
+  on.force.x = on.force.x - normal.x * factor;
+  on.force.y = on.force.y - normal.y * factor;
+  on.force.z = on.force.z - normal.z * factor;
+  on.partners = on.partners + less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
+}
+
+/// Adds whole batches of factors to the sums of a plane.
+/// @param sums  x, y, z and less the partners, by the place in the batch
+template <class Lanes>
+void add_factors(const PlaneRow& plane, const double* factor, std::size_t count,
+                 double (*sums)[kPairBatch]) noexcept {
+  using Row = typename Lanes::Row;
+  const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
+#pragma GCC unroll 4
+  for (std::size_t place = 0; place < kPairBatch; place += Lanes::kWidth) {
+    Row x = Lanes::load(sums[0] + place);
+    Row y = Lanes::load(sums[1] + place);
+    Row z = Lanes::load(sums[2] + place);
+    Row partners = Lanes::load(sums[3] + place);
+    for (std::size_t i = place; i < count; i += kPairBatch) {
+      const Row of_pair = Lanes::load(factor + i);
+      x = x + normal.x * of_pair;
+      y = y + normal.y * of_pair;
+      z = z + normal.z * of_pair;
+      partners = partners + less_one<Lanes>(Lanes::not_equal(of_pair, Lanes::zero()));
+    }
+    Lanes::store(sums[0] + place, x);
+    Lanes::store(sums[1] + place, y);
+    Lanes::store(sums[2] + place, z);
+    Lanes::store(sums[3] + place, partners);
+  }
+}
+
+/// Adds the first factors, and moves what is left to the beginning.
+template <class Lanes, bool kViscous>
+void add_full_batches(const PlaneRow& plane, PlaneSum& sum) noexcept {
+  add_factors<Lanes>(plane, sum.factor, PlaneSum::kRoom, sum.force);
+  if constexpr (kViscous)
+    add_factors<Lanes>(plane, sum.viscous_factor, PlaneSum::kRoom, sum.viscous);
+  for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
+    Lanes::store(sum.factor + i, Lanes::load(sum.factor + PlaneSum::kRoom + i));
+    if constexpr (kViscous)
+      Lanes::store(sum.viscous_factor + i, Lanes::load(sum.viscous_factor + PlaneSum::kRoom + i));
+  }
+  sum.count -= PlaneSum::kRoom;
+}
+
+/// Adds all factors, writes the sums to a column, and empties them.
+template <class Lanes>
+void end_sum(const PlaneRow& plane, double* factor, std::size_t count, double (*sums)[kPairBatch],
+             double* column) noexcept {
+  for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
+    Lanes::store_any(factor + count + i, Lanes::zero());
+  add_factors<Lanes>(plane, factor, count, sums);
+  RowSum<Lanes> all;
+  for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+    const std::size_t place = part * Lanes::kWidth;
+    all.x[part] = Lanes::load(sums[0] + place);
+    all.y[part] = Lanes::load(sums[1] + place);
+    all.z[part] = Lanes::load(sums[2] + place);
+    all.partners[part] = Lanes::load(sums[3] + place);
+    for (std::size_t which = 0; which < 4; ++which)
+      Lanes::store(sums[which] + place, Lanes::zero());
+  }
+  Lanes::store_column(column, Lanes::broadcast(0.0));
+  give<Lanes>(all, column);
+}
+
+/// Finds the pairs of a register of balls with one plane.
+template <class Lanes, bool kViscous>
+void step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
+                typename Lanes::Mask listed, const typename Lanes::Row3& place,
+                const typename Lanes::Row3& way, const double* radius, PlaneSum& sum,
+                ForcesOnBalls<Lanes>& all, ForcesOnBalls<Lanes>& viscous) noexcept {
+  using Row = typename Lanes::Row;
+  const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
+  const typename Lanes::Row3 centre = every<Lanes>(plane.centre);
+  const typename Lanes::Row3 apart{place.x - centre.x, place.y - centre.y, place.z - centre.z};
+  const Row height = dot<Lanes>(normal, apart);
+  const auto near = Lanes::both(listed, Lanes::less(height, Lanes::every(range)));
+  const unsigned chosen = Lanes::bits(near);
+  if (chosen == 0U) return;
+  Row rest_length = Lanes::every(plane.rest_length);
+  if (radius != nullptr) rest_length = rest_length + Lanes::load(radius);
+  const Row min_tension = Lanes::every(pair.min_tension);
+  const Row max_tension = Lanes::every(pair.max_tension);
+  const Row increment = dot<Lanes>(normal, way) - Lanes::every(plane.moved);
+  const Row elastic = Lanes::every(pair.stiffness) * (height - rest_length);
+  const Row tension = elastic + Lanes::every(pair.viscosity_over_dt) * increment;
+  const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
+  const Row factor = Lanes::select(near, limited, Lanes::zero());
+  Lanes::pack(sum.factor + sum.count, factor, chosen);
+  take_pairs<Lanes>(normal, factor, all);
+  if constexpr (kViscous) {
+    const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
+    const Row lost = Lanes::select(near, limited - stored, Lanes::zero());
+    Lanes::pack(sum.viscous_factor + sum.count, lost, chosen);
+    take_pairs<Lanes>(normal, lost, viscous);
+  }
+  sum.count += static_cast<std::size_t>(__builtin_popcount(chosen));
+  if (sum.count >= PlaneSum::kRoom) add_full_batches<Lanes, kViscous>(plane, sum);
+}
+
+/// Adds 8 works to the sums of their places.
+template <class Lanes>
+void add_batch(const double* work, typename Lanes::Column& sums) noexcept {
+  sums = sums + Lanes::load_column(work);
+  sums = sums + Lanes::load_column(work + 4);
+}
+
+/// The works of a batch, and their sums.
+template <class Lanes>
+struct WorksOfBatches {
+  alignas(64) double batch[kPairBatch];
+  typename Lanes::Column sums = Lanes::broadcast(0.0);
+
+  void enter(std::size_t place, const typename Lanes::Row3& force,
+             const typename Lanes::Row3& way) noexcept {
+    Lanes::store(batch + place, dot<Lanes>(force, way));
+  }
+};
+
+template <class Lanes, bool kViscous>
+void step_near_planes(const LinearPair& law, const PlaneRow* planes, const PlaneBalls& all_balls,
+                      const ForceColumns& mats, const MemberValues& all_members, PlaneSum* sums,
+                      PlaneWorks& works) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const LinearPair pair = law;
+  const PlaneBalls balls = all_balls;
+  const MemberValues members = all_members;
+  const double* const position = mats.position;
+  const double* const delayed = mats.delayed;
+  double* const force = mats.force;
+  alignas(32) constexpr double kWithoutPartners[] = {1.0, 1.0, 1.0, 0.0};
+  const auto vector = Lanes::load_column(kWithoutPartners);
+  constexpr unsigned kAll = (1U << kPairBatch) - 1U;
+  WorksOfBatches<Lanes> last;
+  WorksOfBatches<Lanes> last_viscous;
+  WorksOfBatches<Lanes> now;
+  WorksOfBatches<Lanes> now_viscous;
+  Row partners = Lanes::zero();
+
+  for (std::size_t batch = 0; batch < balls.batches.count; ++batch) {
+    if (balls.batches.surfaces[batch] == 0U) continue;
+    const std::size_t first = kPairBatch * batch;
+    const std::uint32_t* const column = balls.column + first;
+    const unsigned listed_of_batch = balls.batches.balls[batch];
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
+      const auto listed = Lanes::mask(listed_of_batch >> i & first_lanes<Lanes>(Lanes::kWidth));
+      const Row3 place = Lanes::vectors(position, column + i);
+      const Row3 before = Lanes::vectors(delayed, column + i);
+      const Row3 way =
+          only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z});
+      double* const own_force = members.force + 4 * (first + i);
+      double* const own_viscous = members.viscous + (kViscous ? 4 * (first + i) : 0);
+      last.enter(i, Lanes::neighbours(own_force), way);
+      if constexpr (kViscous) last_viscous.enter(i, Lanes::neighbours(own_viscous), way);
+      ForcesOnBalls<Lanes> on;
+      ForcesOnBalls<Lanes> viscous_on;
+      for (std::uint64_t left = balls.batches.surfaces[batch]; left != 0U; left &= left - 1U) {
+        const auto plane = static_cast<std::size_t>(__builtin_ctzll(left));
+        step_plane<Lanes, kViscous>(pair, planes[plane], balls.range, listed, place, way,
+                                    balls.radius == nullptr ? nullptr : balls.radius + first + i,
+                                    sums[plane], on, viscous_on);
+      }
+      const Row count = Lanes::zero() - on.partners;
+      partners = Lanes::maximum(Lanes::load(balls.is_mass + first + i) * count, partners);
+      now.enter(i, on.force, way);
+      Lanes::store_columns(own_force, on.force, count);
+      if constexpr (kViscous) {
+        now_viscous.enter(i, viscous_on.force, way);
+        Lanes::store_columns(own_viscous, viscous_on.force, Lanes::zero() - viscous_on.partners);
+      }
+    }
+    add_batch<Lanes>(last.batch, last.sums);
+    add_batch<Lanes>(now.batch, now.sums);
+    if constexpr (kViscous) {
+      add_batch<Lanes>(last_viscous.batch, last_viscous.sums);
+      add_batch<Lanes>(now_viscous.batch, now_viscous.sums);
+    }
+    const auto give_to = [&](std::size_t i) noexcept {
+      const std::size_t own = 4 * (first + i);
+      Lanes::store_column(members.position + own, Lanes::load_column(position + column[i]));
+      Lanes::store_column(force + column[i], Lanes::load_column(force + column[i]) +
+                                                 Lanes::load_column(members.force + own) * vector);
+    };
+    if (listed_of_batch == kAll) {
+#pragma GCC unroll 8
+      for (std::size_t i = 0; i < kPairBatch; ++i) give_to(i);
+    } else {
+      for (unsigned left = listed_of_batch; left != 0U; left &= left - 1U)
+        give_to(static_cast<std::size_t>(__builtin_ctz(left)));
+    }
+  }
+
+  for (std::size_t a = 0; a < balls.plane_count; ++a) {
+    end_sum<Lanes>(planes[a], sums[a].factor, sums[a].count, sums[a].force, members.force + 4 * a);
+    if constexpr (kViscous)
+      end_sum<Lanes>(planes[a], sums[a].viscous_factor, sums[a].count, sums[a].viscous,
+                     members.viscous + 4 * a);
+    sums[a].count = 0;
+  }
+  Lanes::store_column(works.last.all, last.sums);
+  Lanes::store_column(works.now.all, now.sums);
+  if constexpr (kViscous) {
+    Lanes::store_column(works.last.viscous, last_viscous.sums);
+    Lanes::store_column(works.now.viscous, now_viscous.sums);
+  }
+  alignas(64) double lane[Lanes::kWidth];
+  Lanes::store(lane, partners);
+  for (const double most : lane) works.partners = most > works.partners ? most : works.partners;
+}
+
+template <class Lanes>
+void step_planes(const LinearPair& pair, const PlaneRow* planes, const PlaneBalls& balls,
+                 const ForceColumns& mats, const MemberValues& members, PlaneSum* sums,
+                 PlaneWorks& works) noexcept {
+  if (members.viscous == nullptr) {
+    step_near_planes<Lanes, false>(pair, planes, balls, mats, members, sums, works);
+  } else {
+    step_near_planes<Lanes, true>(pair, planes, balls, mats, members, sums, works);
+  }
+}
+
+}  // namespace cordis::engine
