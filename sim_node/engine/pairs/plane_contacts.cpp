@@ -40,6 +40,9 @@ PlaneContacts::PlaneContacts(const NetworkDescription& network, const SetLiaison
   column_.resize(padded_count, column_.back());
   is_mass_.resize(padded_count, 0.0);
   if (has_radii) radius_.resize(padded_count, 0.0);
+  held_plane_.resize(padded_count / kPairBatch, kNoPlane);
+  factor_.resize(padded_count, 0.0);
+  viscous_factor_.resize(padded_count, 0.0);
 }
 
 PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
@@ -54,12 +57,41 @@ PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
     std::copy_n(surfaces.centre(a).data(), 3, plane.centre);
     plane.moved = plane.normal[0] * way[0] + plane.normal[1] * way[1] + plane.normal[2] * way[2];
   }
-  const PlaneBalls balls{column_.data(),  radius_.empty() ? nullptr : radius_.data(),
-                         is_mass_.data(), surfaces.batches(),
-                         planes_.size(),  range_};
+  const PlaneBalls balls{column_.data(),
+                         radius_.empty() ? nullptr : radius_.data(),
+                         is_mass_.data(),
+                         surfaces.batches(),
+                         held_plane_.data(),
+                         factor_.data(),
+                         viscous_factor_.data(),
+                         planes_.size(),
+                         range_};
   PlaneWorks works;
   kernel.step_planes(pair, planes_.data(), balls, columns, members, sums_.data(), works);
   return works;
+}
+
+ForceOnMember PlaneContacts::force(std::size_t member, bool has_viscous) const noexcept {
+  CORDIS_ASSERT(holds(member));
+  const PlaneRow& plane = planes_[held_plane_[member / kPairBatch]];
+  ForceOnMember force;
+  const auto find = [&plane](double factor, double* column) {
+    for (std::size_t axis = 0; axis < 3; ++axis) column[axis] = 0.0 - plane.normal[axis] * factor;
+    column[3] = factor != 0.0 ? 1.0 : 0.0;
+  };
+  find(factor_[member], force.all);
+  if (has_viscous) find(viscous_factor_[member], force.viscous);
+  return force;
+}
+
+void PlaneContacts::write_forces(const MemberValues& members) noexcept {
+  for (std::size_t m = planes_.size(); m < column_.size(); ++m) {
+    if (!holds(m)) continue;
+    const ForceOnMember of_member = force(m, members.viscous != nullptr);
+    std::copy_n(of_member.all, 4, members.force + 4 * m);
+    if (members.viscous != nullptr) std::copy_n(of_member.viscous, 4, members.viscous + 4 * m);
+  }
+  forget();
 }
 
 }  // namespace cordis::engine

@@ -1,6 +1,8 @@
 // sim_node/engine/pairs/plane_contacts.h -- balls on planes, in one pass over the balls.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,9 +15,16 @@
 
 namespace cordis::engine {
 
+/// Force on a member of a set in the last step [N]; the fourth value counts partners.
+struct ForceOnMember {
+  double all[4] = {};
+  double viscous[4] = {};  // the part that stores no energy
+};
+
 /// The pairs of a set between planes with one side and balls, whose contact is one spring and one damper
 /// without friction. Each batch of 8 balls is taken once: places, pairs with all planes near it, works and
-/// forces. The bits are those of the steps for any surface, which take each of these by itself.
+/// forces. The bits are those of the steps for any surface, which take each of these by itself. Where one
+/// plane is near a batch, the force on a ball is kept as its part along the normal.
 class PlaneContacts {
  public:
   /// Empty unless the set acts on planes with one side alone, kMaxOfBatches at most.
@@ -32,13 +41,27 @@ class PlaneContacts {
                   const SurfaceNeighbours& surfaces, const ForceColumns& columns,
                   const MemberValues& members) noexcept;
 
+  /// The forces of the last step stand here, and not in MemberValues, until they are written.
+  bool holds(std::size_t member) const noexcept {
+    return !empty() && member >= planes_.size() && held_plane_[member / kPairBatch] != kNoPlane;
+  }
+  /// Of such a member, with the number of its partners [N]. Precondition: it holds that member.
+  ForceOnMember force(std::size_t member, bool has_viscous) const noexcept;
+  /// Writes what it holds. Real time: O(members), no allocation.
+  void write_forces(const MemberValues& members) noexcept;
+  /// The forces of the last step stand in MemberValues.
+  void forget() noexcept { std::fill(held_plane_.begin(), held_plane_.end(), kNoPlane); }
+
  private:
   double range_ = 0.0;                   // [m]
   std::vector<PlaneRow> planes_;         // of each surface
   std::vector<PlaneSum> sums_;           // likewise, empty between steps
   AlignedVector<std::uint32_t> column_;  // of the MAT of each member, padded
   AlignedVector<double> radius_;  // of each member, padded; empty when the rest length is given [m]
-  AlignedVector<double> is_mass_;  // of each member, padded: 1 or 0
+  AlignedVector<double> is_mass_;         // of each member, padded: 1 or 0
+  std::vector<std::uint8_t> held_plane_;  // see PlaneBalls
+  AlignedVector<double> factor_;
+  AlignedVector<double> viscous_factor_;
 };
 
 }  // namespace cordis::engine

@@ -14,6 +14,8 @@ namespace cordis::engine {
 /// Surfaces of a set of which batches are known at most: a word has a bit for each.
 inline constexpr std::size_t kMaxOfBatches = 64;
 
+inline constexpr std::uint8_t kNoPlane = 255;
+
 /// A plane with one side, and the contact of a ball with it.
 struct PlaneRow {
   double normal[3] = {};
@@ -49,6 +51,11 @@ struct PlaneBalls {
   const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
   const double* is_mass = nullptr;  // of each member: 1 or 0
   ListedBatches batches;
+  // The forces of the last step on the balls of a batch: factor * normal is taken from each by the plane whose
+  // pairs are held so; with kNoPlane they stand in MemberValues.
+  std::uint8_t* held_plane = nullptr;  // of each batch
+  double* factor = nullptr;            // of each member, of the tension
+  double* viscous_factor = nullptr;    // and of the part that stores no energy
   std::size_t plane_count = 0;
   double range = 0.0;  // [m]
 };

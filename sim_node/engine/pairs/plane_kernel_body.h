@@ -40,6 +40,14 @@ void take_pairs(const typename Lanes::Row3& normal, typename Lanes::Row factor,
   on.partners = on.partners + less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
 }
 
+/// The force of a pair on its ball.
+template <class Lanes>
+typename Lanes::Row3 force_of_pair(const typename Lanes::Row3& normal,
+                                   typename Lanes::Row factor) noexcept {
+  return {Lanes::zero() - normal.x * factor, Lanes::zero() - normal.y * factor,
+          Lanes::zero() - normal.z * factor};
+}
+
 /// Adds whole batches of factors to the sums of a plane.
 /// @param sums  x, y, z and less the partners, by the place in the batch
 template <class Lanes>
@@ -102,12 +110,19 @@ void end_sum(const PlaneRow& plane, double* factor, std::size_t count, double (*
   give<Lanes>(all, column);
 }
 
+/// Factors of the pairs of a register of balls with one plane, 0 out of range.
+template <class Lanes>
+struct PlaneFactors {
+  typename Lanes::Row all = Lanes::zero();
+  typename Lanes::Row viscous = Lanes::zero();
+};
+
 /// Finds the pairs of a register of balls with one plane.
 template <class Lanes, bool kViscous>
-void step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
-                typename Lanes::Mask listed, const typename Lanes::Row3& place,
-                const typename Lanes::Row3& way, const double* radius, PlaneSum& sum,
-                ForcesOnBalls<Lanes>& all, ForcesOnBalls<Lanes>& viscous) noexcept {
+PlaneFactors<Lanes> step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
+                               typename Lanes::Mask listed, const typename Lanes::Row3& place,
+                               const typename Lanes::Row3& way, const double* radius, PlaneSum& sum,
+                               ForcesOnBalls<Lanes>& all, ForcesOnBalls<Lanes>& viscous) noexcept {
   using Row = typename Lanes::Row;
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
   const typename Lanes::Row3 centre = every<Lanes>(plane.centre);
@@ -115,7 +130,8 @@ void step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
   const Row height = dot<Lanes>(normal, apart);
   const auto near = Lanes::both(listed, Lanes::less(height, Lanes::every(range)));
   const unsigned chosen = Lanes::bits(near);
-  if (chosen == 0U) return;
+  PlaneFactors<Lanes> factors;
+  if (chosen == 0U) return factors;
   Row rest_length = Lanes::every(plane.rest_length);
   if (radius != nullptr) rest_length = rest_length + Lanes::load(radius);
   const Row min_tension = Lanes::every(pair.min_tension);
@@ -124,17 +140,18 @@ void step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
   const Row elastic = Lanes::every(pair.stiffness) * (height - rest_length);
   const Row tension = elastic + Lanes::every(pair.viscosity_over_dt) * increment;
   const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
-  const Row factor = Lanes::select(near, limited, Lanes::zero());
-  Lanes::pack(sum.factor + sum.count, factor, chosen);
-  take_pairs<Lanes>(normal, factor, all);
+  factors.all = Lanes::select(near, limited, Lanes::zero());
+  Lanes::pack(sum.factor + sum.count, factors.all, chosen);
+  take_pairs<Lanes>(normal, factors.all, all);
   if constexpr (kViscous) {
     const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
-    const Row lost = Lanes::select(near, limited - stored, Lanes::zero());
-    Lanes::pack(sum.viscous_factor + sum.count, lost, chosen);
-    take_pairs<Lanes>(normal, lost, viscous);
+    factors.viscous = Lanes::select(near, limited - stored, Lanes::zero());
+    Lanes::pack(sum.viscous_factor + sum.count, factors.viscous, chosen);
+    take_pairs<Lanes>(normal, factors.viscous, viscous);
   }
   sum.count += static_cast<std::size_t>(__builtin_popcount(chosen));
   if (sum.count >= PlaneSum::kRoom) add_full_batches<Lanes, kViscous>(plane, sum);
+  return factors;
 }
 
 /// Adds 8 works to the sums of their places.
@@ -168,8 +185,6 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   const double* const position = mats.position;
   const double* const delayed = mats.delayed;
   double* const force = mats.force;
-  alignas(32) constexpr double kWithoutPartners[] = {1.0, 1.0, 1.0, 0.0};
-  const auto vector = Lanes::load_column(kWithoutPartners);
   constexpr unsigned kAll = (1U << kPairBatch) - 1U;
   WorksOfBatches<Lanes> last;
   WorksOfBatches<Lanes> last_viscous;
@@ -178,56 +193,78 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   Row partners = Lanes::zero();
 
   for (std::size_t batch = 0; batch < balls.batches.count; ++batch) {
-    if (balls.batches.surfaces[batch] == 0U) continue;
+    const std::uint64_t near_planes = balls.batches.surfaces[batch];
+    if (near_planes == 0U) continue;
+    const bool is_one_plane = (near_planes & (near_planes - 1U)) == 0U;
+    const std::size_t held = balls.held_plane[batch];
     const std::size_t first = kPairBatch * batch;
     const std::uint32_t* const column = balls.column + first;
     const unsigned listed_of_batch = balls.batches.balls[batch];
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
+      const std::size_t m = first + i;
       const auto listed = Lanes::mask(listed_of_batch >> i & first_lanes<Lanes>(Lanes::kWidth));
       const Row3 place = Lanes::vectors(position, column + i);
       const Row3 before = Lanes::vectors(delayed, column + i);
       const Row3 way =
           only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z});
-      double* const own_force = members.force + 4 * (first + i);
-      double* const own_viscous = members.viscous + (kViscous ? 4 * (first + i) : 0);
-      last.enter(i, Lanes::neighbours(own_force), way);
-      if constexpr (kViscous) last_viscous.enter(i, Lanes::neighbours(own_viscous), way);
+      if (held != kNoPlane) {
+        const Row3 normal = every<Lanes>(planes[held].normal);
+        last.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.factor + m)), way);
+        if constexpr (kViscous)
+          last_viscous.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.viscous_factor + m)),
+                             way);
+      } else {
+        last.enter(i, Lanes::neighbours(members.force + 4 * m), way);
+        if constexpr (kViscous)
+          last_viscous.enter(i, Lanes::neighbours(members.viscous + 4 * m), way);
+      }
       ForcesOnBalls<Lanes> on;
       ForcesOnBalls<Lanes> viscous_on;
-      for (std::uint64_t left = balls.batches.surfaces[batch]; left != 0U; left &= left - 1U) {
+      PlaneFactors<Lanes> factors;
+      for (std::uint64_t left = near_planes; left != 0U; left &= left - 1U) {
         const auto plane = static_cast<std::size_t>(__builtin_ctzll(left));
-        step_plane<Lanes, kViscous>(pair, planes[plane], balls.range, listed, place, way,
-                                    balls.radius == nullptr ? nullptr : balls.radius + first + i,
-                                    sums[plane], on, viscous_on);
+        factors = step_plane<Lanes, kViscous>(pair, planes[plane], balls.range, listed, place, way,
+                                              balls.radius == nullptr ? nullptr : balls.radius + m,
+                                              sums[plane], on, viscous_on);
       }
       const Row count = Lanes::zero() - on.partners;
-      partners = Lanes::maximum(Lanes::load(balls.is_mass + first + i) * count, partners);
+      partners = Lanes::maximum(Lanes::load(balls.is_mass + m) * count, partners);
       now.enter(i, on.force, way);
-      Lanes::store_columns(own_force, on.force, count);
-      if constexpr (kViscous) {
-        now_viscous.enter(i, viscous_on.force, way);
-        Lanes::store_columns(own_viscous, viscous_on.force, Lanes::zero() - viscous_on.partners);
+      if constexpr (kViscous) now_viscous.enter(i, viscous_on.force, way);
+      if (is_one_plane) {
+        Lanes::store(balls.factor + m, factors.all);
+        if constexpr (kViscous) Lanes::store(balls.viscous_factor + m, factors.viscous);
+      } else {
+        Lanes::store_columns(members.force + 4 * m, on.force, count);
+        if constexpr (kViscous)
+          Lanes::store_columns(members.viscous + 4 * m, viscous_on.force,
+                               Lanes::zero() - viscous_on.partners);
       }
+      const Row nothing = Lanes::every(-0.0);  // changes no force, not even one of -0
+      Lanes::add(
+          force, column + i,
+          {Lanes::select(listed, on.force.x, nothing), Lanes::select(listed, on.force.y, nothing),
+           Lanes::select(listed, on.force.z, nothing)});
     }
+    balls.held_plane[batch] =
+        is_one_plane ? static_cast<std::uint8_t>(__builtin_ctzll(near_planes)) : kNoPlane;
     add_batch<Lanes>(last.batch, last.sums);
     add_batch<Lanes>(now.batch, now.sums);
     if constexpr (kViscous) {
       add_batch<Lanes>(last_viscous.batch, last_viscous.sums);
       add_batch<Lanes>(now_viscous.batch, now_viscous.sums);
     }
-    const auto give_to = [&](std::size_t i) noexcept {
-      const std::size_t own = 4 * (first + i);
-      Lanes::store_column(members.position + own, Lanes::load_column(position + column[i]));
-      Lanes::store_column(force + column[i], Lanes::load_column(force + column[i]) +
-                                                 Lanes::load_column(members.force + own) * vector);
+    const auto take_position = [&](std::size_t i) noexcept {
+      Lanes::store_column(members.position + 4 * (first + i),
+                          Lanes::load_column(position + column[i]));
     };
     if (listed_of_batch == kAll) {
 #pragma GCC unroll 8
-      for (std::size_t i = 0; i < kPairBatch; ++i) give_to(i);
+      for (std::size_t i = 0; i < kPairBatch; ++i) take_position(i);
     } else {
       for (unsigned left = listed_of_batch; left != 0U; left &= left - 1U)
-        give_to(static_cast<std::size_t>(__builtin_ctz(left)));
+        take_position(static_cast<std::size_t>(__builtin_ctz(left)));
     }
   }
 

@@ -155,6 +155,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 }
 
 void SetPairs::adopt(const StateTable& table) {
+  write_forces();
   state_machines_.adopt(table);
   friction_.adopt(table.state_machines()[state_machine_], table.needs(Quantity::kSlid));
   first_state_ = table.first_state(state_machine_);
@@ -668,11 +669,20 @@ inline void SetPairs::give_force(std::size_t m, const ForceColumns& columns) con
   for (std::size_t axis = 0; axis < 3; ++axis) force[axis] += force_[4 * m + axis];
 }
 
+ForceOnMember SetPairs::force_on(std::size_t member) const noexcept {
+  if (planes_.holds(member)) return planes_.force(member, has_viscous_);
+  ForceOnMember force;
+  std::copy_n(force_.data() + 4 * member, 4, force.all);
+  std::copy_n(viscous_.data() + 4 * member, 4, force.viscous);
+  return force;
+}
+
 /// Half of what the force on a member takes over a way.
 inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
-  const double all = -0.5 * product_of(force_.data() + 4 * member, moved);
+  const ForceOnMember force = force_on(member);
+  const double all = -0.5 * product_of(force.all, moved);
   if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
-  const double dissipated = -0.5 * product_of(viscous_.data() + 4 * member, moved);
+  const double dissipated = -0.5 * product_of(force.viscous, moved);
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
@@ -694,6 +704,7 @@ StepEnergy SetPairs::take_visited(const ForceColumns& columns, Visit visit) noex
 
 /// Gathers the members, and ends the account of the last forces.
 StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* team) noexcept {
+  write_forces();
   if (!works_.empty() && active_.are_all()) {
     visit_chunks(team, [&](std::size_t chunk) noexcept {
       works_[chunk] =
@@ -853,7 +864,7 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
 void SetPairs::add_viscous_forces(AlignedVector<double>& force) const noexcept {
   if (!has_viscous_) return;
   for (std::size_t m = 0; m < column_.size(); ++m)
-    column(force, column_[m] / 4) += column(viscous_, m);
+    column(force, column_[m] / 4) += Vec3::Map(force_on(m).viscous);
 }
 
 /// Adds the energy of a pair, and what it has where it comes into range, in all states.
@@ -969,6 +980,7 @@ void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, 
 
 /// The elastic forces stay: their work up to step 0 belongs to the energy stored there.
 void SetPairs::start() noexcept {
+  write_forces();
   constexpr std::size_t kPartners = 3;  // of the 4 values of a column: no force
   for (std::size_t i = 0; i < viscous_.size(); ++i) {
     if (i % 4 != kPartners) force_[i] -= viscous_[i];
@@ -1070,6 +1082,7 @@ bool SetPairs::is_overflowed() const noexcept {
 }
 
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
+  write_forces();
   const std::size_t value_count = 4 * (padding_begin() + kPairBatch);
   for (AlignedVector<double>* values : {&force_, &viscous_, &position_})
     archive.reals(std::span(*values).first(value_count));

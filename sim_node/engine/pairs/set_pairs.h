@@ -117,7 +117,7 @@ class SetPairs {
   std::uint32_t partners_of(std::size_t member) const noexcept {
     CORDIS_ASSERT(member < column_.size());
     const double most = static_cast<double>(column_.size());
-    const double partners = force_[4 * member + 3];  // of a snapshot: any number
+    const double partners = force_on(member).all[3];  // of a snapshot: any number
     return partners > 0.0 ? static_cast<std::uint32_t>(std::ceil(std::min(partners, most))) : 0;
   }
 
@@ -227,6 +227,9 @@ class SetPairs {
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
   void list_surfaces() noexcept { surfaces_changed_ = surfaces_.list() || surfaces_changed_; }
+  ForceOnMember force_on(std::size_t member) const noexcept;
+  /// From here on the forces of the last step stand in force_ and viscous_.
+  void write_forces() noexcept { planes_.write_forces(values_from(0)); }
   bool takes_balls_at_once(const ForceColumns& columns) noexcept;
   StepEnergy add_plane_forces(const ForceColumns& columns) noexcept;
   void pad_at_surfaces() noexcept;

@@ -34,24 +34,24 @@ struct Avx2PairLanes : Avx2Lanes {
   }
   static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
                        Row w) noexcept {
-    const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
-    const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
-    const Row even_z = _mm256_unpacklo_pd(v.z, w);
-    const Row odd_z = _mm256_unpackhi_pd(v.z, w);
-    subtract_column(columns + offset[0], _mm256_permute2f128_pd(even_xy, even_z, 0x20));
-    subtract_column(columns + offset[1], _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
-    subtract_column(columns + offset[2], _mm256_permute2f128_pd(even_xy, even_z, 0x31));
-    subtract_column(columns + offset[3], _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
+    Row column[4];
+    columns_of(v, w, column);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l)
+      store(columns + offset[l], load(columns + offset[l]) - column[l]);
+  }
+  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
+    Row column[4];
+    columns_of(v, zero(), column);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l)
+      store(columns + offset[l], load(columns + offset[l]) + column[l]);
   }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
-    const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
-    const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
-    const Row even_z = _mm256_unpacklo_pd(v.z, w);
-    const Row odd_z = _mm256_unpackhi_pd(v.z, w);
-    store(columns, _mm256_permute2f128_pd(even_xy, even_z, 0x20));
-    store(columns + 4, _mm256_permute2f128_pd(odd_xy, odd_z, 0x20));
-    store(columns + 8, _mm256_permute2f128_pd(even_xy, even_z, 0x31));
-    store(columns + 12, _mm256_permute2f128_pd(odd_xy, odd_z, 0x31));
+    Row column[4];
+    columns_of(v, w, column);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) store(columns + 4 * l, column[l]);
   }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
@@ -80,7 +80,16 @@ struct Avx2PairLanes : Avx2Lanes {
             _mm256_permute2f128_pd(odd01, odd23, 0x20),
             _mm256_permute2f128_pd(even01, even23, 0x31)};
   }
-  static void subtract_column(double* column, Row v) noexcept { store(column, load(column) - v); }
+  static void columns_of(const Row3& v, Row w, Row* column) noexcept {
+    const Row even_xy = _mm256_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2
+    const Row odd_xy = _mm256_unpackhi_pd(v.x, v.y);   // x1 y1 x3 y3
+    const Row even_z = _mm256_unpacklo_pd(v.z, w);
+    const Row odd_z = _mm256_unpackhi_pd(v.z, w);
+    column[0] = _mm256_permute2f128_pd(even_xy, even_z, 0x20);
+    column[1] = _mm256_permute2f128_pd(odd_xy, odd_z, 0x20);
+    column[2] = _mm256_permute2f128_pd(even_xy, even_z, 0x31);
+    column[3] = _mm256_permute2f128_pd(odd_xy, odd_z, 0x31);
+  }
 };
 
 static_assert(SimdPairLanes<Avx2PairLanes>);

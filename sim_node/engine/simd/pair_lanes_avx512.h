@@ -21,32 +21,37 @@ struct Avx512PairLanes : Avx512Lanes {
   }
   static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
                        Row w) noexcept {
-    const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
-    const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
-    const Row even_z = _mm512_unpacklo_pd(v.z, w);
-    const Row odd_z = _mm512_unpackhi_pd(v.z, w);
-    const Row c04 = first_pairs(even_xy, even_z);
-    const Row c15 = first_pairs(odd_xy, odd_z);
-    const Row c26 = second_pairs(even_xy, even_z);
-    const Row c37 = second_pairs(odd_xy, odd_z);
-    subtract_column(columns + offset[0], _mm512_castpd512_pd256(c04));
-    subtract_column(columns + offset[1], _mm512_castpd512_pd256(c15));
-    subtract_column(columns + offset[2], _mm512_castpd512_pd256(c26));
-    subtract_column(columns + offset[3], _mm512_castpd512_pd256(c37));
-    subtract_column(columns + offset[4], _mm512_extractf64x4_pd(c04, 1));
-    subtract_column(columns + offset[5], _mm512_extractf64x4_pd(c15, 1));
-    subtract_column(columns + offset[6], _mm512_extractf64x4_pd(c26, 1));
-    subtract_column(columns + offset[7], _mm512_extractf64x4_pd(c37, 1));
+    Row pairs[4];
+    two_by_two(v, w, pairs);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) {
+      subtract_column(columns + offset[l], _mm512_castpd512_pd256(pairs[l]));
+    }
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) {
+      subtract_column(columns + offset[l + 4], _mm512_extractf64x4_pd(pairs[l], 1));
+    }
+  }
+  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
+    Row pairs[4];
+    two_by_two(v, zero(), pairs);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) {
+      add_column(columns + offset[l], _mm512_castpd512_pd256(pairs[l]));
+    }
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) {
+      add_column(columns + offset[l + 4], _mm512_extractf64x4_pd(pairs[l], 1));
+    }
   }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
-    const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
-    const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
-    const Row even_z = _mm512_unpacklo_pd(v.z, w);
-    const Row odd_z = _mm512_unpackhi_pd(v.z, w);
-    store_two(columns, columns + 16, first_pairs(even_xy, even_z));
-    store_two(columns + 4, columns + 20, first_pairs(odd_xy, odd_z));
-    store_two(columns + 8, columns + 24, second_pairs(even_xy, even_z));
-    store_two(columns + 12, columns + 28, second_pairs(odd_xy, odd_z));
+    Row pairs[4];
+    two_by_two(v, w, pairs);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) {
+      store_column(columns + 4 * l, _mm512_castpd512_pd256(pairs[l]));
+      store_column(columns + 4 * l + 16, _mm512_extractf64x4_pd(pairs[l], 1));
+    }
   }
 
   static Column sum_batch(const Row* x, const Row* y, const Row* z, const Row* w) noexcept {
@@ -65,15 +70,25 @@ struct Avx512PairLanes : Avx512Lanes {
   }
 
  private:
-  static void store_two(double* low, double* high, Row v) noexcept {
-    store_column(low, _mm512_castpd512_pd256(v));
-    store_column(high, _mm512_extractf64x4_pd(v, 1));
+  /// The columns of lanes l and l + 4, one after the other.
+  static void two_by_two(const Row3& v, Row w, Row* pairs) noexcept {
+    const Row even_xy = _mm512_unpacklo_pd(v.x, v.y);  // x0 y0 x2 y2  x4 y4 x6 y6
+    const Row odd_xy = _mm512_unpackhi_pd(v.x, v.y);
+    const Row even_z = _mm512_unpacklo_pd(v.z, w);
+    const Row odd_z = _mm512_unpackhi_pd(v.z, w);
+    pairs[0] = first_pairs(even_xy, even_z);
+    pairs[1] = first_pairs(odd_xy, odd_z);
+    pairs[2] = second_pairs(even_xy, even_z);
+    pairs[3] = second_pairs(odd_xy, odd_z);
   }
   static Column sum_halves(Row v) noexcept {
     return _mm512_castpd512_pd256(v) + _mm512_extractf64x4_pd(v, 1);
   }
   static void subtract_column(double* column, Column v) noexcept {
     store_column(column, load_column(column) - v);
+  }
+  static void add_column(double* column, Column v) noexcept {
+    store_column(column, load_column(column) + v);
   }
 };
 

@@ -22,6 +22,12 @@ struct Sse2PairLanes : Sse2Lanes {
     store_column(columns + offset[0], load_column(columns + offset[0]) - first);
     store_column(columns + offset[1], load_column(columns + offset[1]) - second);
   }
+  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
+    const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, zero())};
+    const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, zero())};
+    store_column(columns + offset[0], load_column(columns + offset[0]) + first);
+    store_column(columns + offset[1], load_column(columns + offset[1]) + second);
+  }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
     store_column(columns, {_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, w)});
     store_column(columns + 4, {_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, w)});

@@ -75,6 +75,8 @@ concept SimdPairLanes = SimdLanes<Lanes> &&
   { Lanes::neighbours(in) } -> std::same_as<typename Lanes::Row3>;
   // subtracts vectors and their fourth values from the columns at `at`, one after the other
   Lanes::subtract(out, offset, vectors, row);
+  // adds vectors to the columns at `at`, one after the other
+  Lanes::add(out, offset, vectors);
   // writes vectors and their fourth values as columns that follow one another
   Lanes::store_columns(out, vectors, row);
   // the sums of the 8 places of a batch of x, y, z and w: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7))
