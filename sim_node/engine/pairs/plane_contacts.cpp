@@ -40,6 +40,11 @@ PlaneContacts::PlaneContacts(const NetworkDescription& network, const SetLiaison
   column_.resize(padded_count, column_.back());
   is_mass_.resize(padded_count, 0.0);
   if (has_radii) radius_.resize(padded_count, 0.0);
+  for (std::size_t m = 0; m < padded_count; m += kPairBatch) {
+    is_run_.push_back(1);
+    for (std::size_t i = 1; i < kPairBatch; ++i)
+      if (column_[m + i] != column_[m] + 4 * i) is_run_.back() = 0;
+  }
   held_plane_.resize(padded_count / kPairBatch, kNoPlane);
   factor_.resize(padded_count, 0.0);
   viscous_factor_.resize(padded_count, 0.0);
@@ -57,15 +62,11 @@ PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
     std::copy_n(surfaces.centre(a).data(), 3, plane.centre);
     plane.moved = plane.normal[0] * way[0] + plane.normal[1] * way[1] + plane.normal[2] * way[2];
   }
-  const PlaneBalls balls{column_.data(),
-                         radius_.empty() ? nullptr : radius_.data(),
-                         is_mass_.data(),
-                         surfaces.batches(),
-                         held_plane_.data(),
-                         factor_.data(),
-                         viscous_factor_.data(),
-                         planes_.size(),
-                         range_};
+  const PlaneBalls balls{
+      column_.data(),  is_run_.data(),         radius_.empty() ? nullptr : radius_.data(),
+      is_mass_.data(), surfaces.batches(),     held_plane_.data(),
+      factor_.data(),  viscous_factor_.data(), planes_.size(),
+      range_};
   PlaneWorks works;
   kernel.step_planes(pair, planes_.data(), balls, columns, members, sums_.data(), works);
   return works;

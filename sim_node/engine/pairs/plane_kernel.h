@@ -48,6 +48,7 @@ struct ListedBatches {
 /// batches.
 struct PlaneBalls {
   const std::uint32_t* column = nullptr;  // of the MAT of each member; of padding, that of any ball
+  const std::uint8_t* is_run = nullptr;   // of each batch: 1 where its columns follow one another
   const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
   const double* is_mass = nullptr;  // of each member: 1 or 0
   ListedBatches batches;

@@ -110,6 +110,15 @@ void end_sum(const PlaneRow& plane, double* factor, std::size_t count, double (*
   give<Lanes>(all, column);
 }
 
+/// A register of balls.
+template <class Lanes>
+struct SomeBalls {
+  typename Lanes::Mask listed;
+  typename Lanes::Row3 place;
+  typename Lanes::Row3 way;  // 0 of those that are not listed
+  const double* radius;      // null: the rest length is that of the plane
+};
+
 /// Factors of the pairs of a register of balls with one plane, 0 out of range.
 template <class Lanes>
 struct PlaneFactors {
@@ -117,39 +126,36 @@ struct PlaneFactors {
   typename Lanes::Row viscous = Lanes::zero();
 };
 
-/// Finds the pairs of a register of balls with one plane.
+/// Finds the pairs of a register of balls with one plane, and adds them to the sums of the plane.
 template <class Lanes, bool kViscous>
-PlaneFactors<Lanes> step_plane(const LinearPair& pair, const PlaneRow& plane, double range,
-                               typename Lanes::Mask listed, const typename Lanes::Row3& place,
-                               const typename Lanes::Row3& way, const double* radius, PlaneSum& sum,
-                               ForcesOnBalls<Lanes>& all, ForcesOnBalls<Lanes>& viscous) noexcept {
+PlaneFactors<Lanes> find_factors(const LinearPair& pair, const PlaneRow& plane, double range,
+                                 const SomeBalls<Lanes>& balls, PlaneSum& sum) noexcept {
   using Row = typename Lanes::Row;
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
   const typename Lanes::Row3 centre = every<Lanes>(plane.centre);
-  const typename Lanes::Row3 apart{place.x - centre.x, place.y - centre.y, place.z - centre.z};
-  const Row height = dot<Lanes>(normal, apart);
-  const auto near = Lanes::both(listed, Lanes::less(height, Lanes::every(range)));
+  const Row height = dot<Lanes>(
+      normal, {balls.place.x - centre.x, balls.place.y - centre.y, balls.place.z - centre.z});
+  const auto near = Lanes::both(balls.listed, Lanes::less(height, Lanes::every(range)));
   const unsigned chosen = Lanes::bits(near);
   PlaneFactors<Lanes> factors;
   if (chosen == 0U) return factors;
   Row rest_length = Lanes::every(plane.rest_length);
-  if (radius != nullptr) rest_length = rest_length + Lanes::load(radius);
+  if (balls.radius != nullptr) rest_length = rest_length + Lanes::load(balls.radius);
   const Row min_tension = Lanes::every(pair.min_tension);
   const Row max_tension = Lanes::every(pair.max_tension);
-  const Row increment = dot<Lanes>(normal, way) - Lanes::every(plane.moved);
+  const Row increment = dot<Lanes>(normal, balls.way) - Lanes::every(plane.moved);
   const Row elastic = Lanes::every(pair.stiffness) * (height - rest_length);
   const Row tension = elastic + Lanes::every(pair.viscosity_over_dt) * increment;
   const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
   factors.all = Lanes::select(near, limited, Lanes::zero());
-  Lanes::pack(sum.factor + sum.count, factors.all, chosen);
-  take_pairs<Lanes>(normal, factors.all, all);
+  const std::size_t count = sum.count;
+  Lanes::pack(sum.factor + count, factors.all, chosen);
   if constexpr (kViscous) {
     const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
     factors.viscous = Lanes::select(near, limited - stored, Lanes::zero());
-    Lanes::pack(sum.viscous_factor + sum.count, factors.viscous, chosen);
-    take_pairs<Lanes>(normal, factors.viscous, viscous);
+    Lanes::pack(sum.viscous_factor + count, factors.viscous, chosen);
   }
-  sum.count += static_cast<std::size_t>(__builtin_popcount(chosen));
+  sum.count = count + static_cast<std::size_t>(__builtin_popcount(chosen));
   if (sum.count >= PlaneSum::kRoom) add_full_batches<Lanes, kViscous>(plane, sum);
   return factors;
 }
@@ -173,10 +179,126 @@ struct WorksOfBatches {
   }
 };
 
+/// The works of all batches.
+template <class Lanes>
+struct WorksOfStep {
+  WorksOfBatches<Lanes> last;
+  WorksOfBatches<Lanes> last_viscous;
+  WorksOfBatches<Lanes> now;
+  WorksOfBatches<Lanes> now_viscous;
+
+  template <bool kViscous>
+  void end_batch() noexcept {
+    add_batch<Lanes>(last.batch, last.sums);
+    add_batch<Lanes>(now.batch, now.sums);
+    if constexpr (kViscous) {
+      add_batch<Lanes>(last_viscous.batch, last_viscous.sums);
+      add_batch<Lanes>(now_viscous.batch, now_viscous.sums);
+    }
+  }
+};
+
+/// Enters what the last forces of a register of balls have done, from member m on, place i of its batch.
+template <class Lanes, bool kViscous>
+void end_last_forces(const PlaneRow* planes, const PlaneBalls& balls, const MemberValues& members,
+                     std::size_t m, std::size_t i, const typename Lanes::Row3& way,
+                     WorksOfStep<Lanes>& works) noexcept {
+  const std::size_t held = balls.held_plane[m / kPairBatch];
+  if (held == kNoPlane) {
+    works.last.enter(i, Lanes::neighbours(members.force + 4 * m), way);
+    if constexpr (kViscous)
+      works.last_viscous.enter(i, Lanes::neighbours(members.viscous + 4 * m), way);
+    return;
+  }
+  const typename Lanes::Row3 normal = every<Lanes>(planes[held].normal);
+  works.last.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.factor + m)), way);
+  if constexpr (kViscous)
+    works.last_viscous.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.viscous_factor + m)),
+                             way);
+}
+
+/// Takes the places of the balls of a batch that are listed.
+template <class Lanes>
+void take_places(const PlaneBalls& balls, std::size_t batch, const double* position,
+                 double* own_position) noexcept {
+  const std::uint32_t* const column = balls.column + kPairBatch * batch;
+  double* const own = own_position + 4 * kPairBatch * batch;
+  const unsigned listed = balls.batches.balls[batch];
+  if (listed == (1U << kPairBatch) - 1U && balls.is_run[batch] != 0) {
+    for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
+      Lanes::copy_neighbours(own + 4 * i, position + *column + 4 * i);
+    return;
+  }
+  for (unsigned left = listed; left != 0U; left &= left - 1U) {
+    const auto i = static_cast<std::size_t>(__builtin_ctz(left));
+    Lanes::store_column(own + 4 * i, Lanes::load_column(position + column[i]));
+  }
+}
+
+/// Finds the forces of a register of balls with one plane, and keeps their factors.
+template <class Lanes, bool kViscous>
+ForcesOnBalls<Lanes> step_with_one_plane(const LinearPair& pair, const PlaneRow& plane,
+                                         const PlaneBalls& balls, std::size_t m, std::size_t i,
+                                         const SomeBalls<Lanes>& some, PlaneSum& sum,
+                                         WorksOfStep<Lanes>& works) noexcept {
+  const PlaneFactors<Lanes> factors =
+      find_factors<Lanes, kViscous>(pair, plane, balls.range, some, sum);
+  const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
+  Lanes::store(balls.factor + m, factors.all);
+  if constexpr (kViscous) {
+    Lanes::store(balls.viscous_factor + m, factors.viscous);
+    works.now_viscous.enter(i, force_of_pair<Lanes>(normal, factors.viscous), some.way);
+  }
+  return {force_of_pair<Lanes>(normal, factors.all),
+          less_one<Lanes>(Lanes::not_equal(factors.all, Lanes::zero()))};
+}
+
+/// Likewise with several planes, whose forces are summed; keeps the sums.
+template <class Lanes, bool kViscous>
+ForcesOnBalls<Lanes> step_with_planes(const LinearPair& pair, const PlaneRow* planes,
+                                      const PlaneBalls& balls, std::size_t m, std::size_t i,
+                                      const SomeBalls<Lanes>& some, PlaneSum* sums,
+                                      const MemberValues& members,
+                                      WorksOfStep<Lanes>& works) noexcept {
+  ForcesOnBalls<Lanes> on;
+  ForcesOnBalls<Lanes> viscous_on;
+  for (std::uint64_t left = balls.batches.surfaces[m / kPairBatch]; left != 0U; left &= left - 1U) {
+    const auto plane = static_cast<std::size_t>(__builtin_ctzll(left));
+    const PlaneFactors<Lanes> factors =
+        find_factors<Lanes, kViscous>(pair, planes[plane], balls.range, some, sums[plane]);
+    const typename Lanes::Row3 normal = every<Lanes>(planes[plane].normal);
+    take_pairs<Lanes>(normal, factors.all, on);
+    if constexpr (kViscous) take_pairs<Lanes>(normal, factors.viscous, viscous_on);
+  }
+  Lanes::store_columns(members.force + 4 * m, on.force, Lanes::zero() - on.partners);
+  if constexpr (kViscous) {
+    works.now_viscous.enter(i, viscous_on.force, some.way);
+    Lanes::store_columns(members.viscous + 4 * m, viscous_on.force,
+                         Lanes::zero() - viscous_on.partners);
+  }
+  return on;
+}
+
+/// Gives the forces of a register of balls that are listed to their MATs.
+template <class Lanes>
+void give_forces_to(double* force, const std::uint32_t* column, bool is_run,
+                    typename Lanes::Mask listed, const typename Lanes::Row3& v) noexcept {
+  const typename Lanes::Row nothing =
+      Lanes::every(-0.0);  // it changes no force, not even one of -0
+  const typename Lanes::Row3 given{Lanes::select(listed, v.x, nothing),
+                                   Lanes::select(listed, v.y, nothing),
+                                   Lanes::select(listed, v.z, nothing)};
+  if (is_run) {
+    Lanes::add_to_neighbours(force + *column, given);
+  } else {
+    Lanes::add(force, column, given);
+  }
+}
+
 template <class Lanes, bool kViscous>
 void step_near_planes(const LinearPair& law, const PlaneRow* planes, const PlaneBalls& all_balls,
                       const ForceColumns& mats, const MemberValues& all_members, PlaneSum* sums,
-                      PlaneWorks& works) noexcept {
+                      PlaneWorks& result) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const LinearPair pair = law;
@@ -185,87 +307,42 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   const double* const position = mats.position;
   const double* const delayed = mats.delayed;
   double* const force = mats.force;
-  constexpr unsigned kAll = (1U << kPairBatch) - 1U;
-  WorksOfBatches<Lanes> last;
-  WorksOfBatches<Lanes> last_viscous;
-  WorksOfBatches<Lanes> now;
-  WorksOfBatches<Lanes> now_viscous;
-  Row partners = Lanes::zero();
+  WorksOfStep<Lanes> works;
+  Row less_partners = Lanes::zero();
 
   for (std::size_t batch = 0; batch < balls.batches.count; ++batch) {
     const std::uint64_t near_planes = balls.batches.surfaces[batch];
     if (near_planes == 0U) continue;
     const bool is_one_plane = (near_planes & (near_planes - 1U)) == 0U;
-    const std::size_t held = balls.held_plane[batch];
-    const std::size_t first = kPairBatch * batch;
-    const std::uint32_t* const column = balls.column + first;
+    const auto first_plane = static_cast<std::size_t>(__builtin_ctzll(near_planes));
+    const bool is_run = balls.is_run[batch] != 0;
     const unsigned listed_of_batch = balls.batches.balls[batch];
 #pragma GCC unroll 4
     for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
-      const std::size_t m = first + i;
+      const std::size_t m = kPairBatch * batch + i;
+      const std::uint32_t* const column = balls.column + m;
+      const Row3 place =
+          is_run ? Lanes::neighbours(position + *column) : Lanes::vectors(position, column);
+      const Row3 before =
+          is_run ? Lanes::neighbours(delayed + *column) : Lanes::vectors(delayed, column);
       const auto listed = Lanes::mask(listed_of_batch >> i & first_lanes<Lanes>(Lanes::kWidth));
-      const Row3 place = Lanes::vectors(position, column + i);
-      const Row3 before = Lanes::vectors(delayed, column + i);
-      const Row3 way =
-          only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z});
-      if (held != kNoPlane) {
-        const Row3 normal = every<Lanes>(planes[held].normal);
-        last.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.factor + m)), way);
-        if constexpr (kViscous)
-          last_viscous.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.viscous_factor + m)),
-                             way);
-      } else {
-        last.enter(i, Lanes::neighbours(members.force + 4 * m), way);
-        if constexpr (kViscous)
-          last_viscous.enter(i, Lanes::neighbours(members.viscous + 4 * m), way);
-      }
-      ForcesOnBalls<Lanes> on;
-      ForcesOnBalls<Lanes> viscous_on;
-      PlaneFactors<Lanes> factors;
-      for (std::uint64_t left = near_planes; left != 0U; left &= left - 1U) {
-        const auto plane = static_cast<std::size_t>(__builtin_ctzll(left));
-        factors = step_plane<Lanes, kViscous>(pair, planes[plane], balls.range, listed, place, way,
-                                              balls.radius == nullptr ? nullptr : balls.radius + m,
-                                              sums[plane], on, viscous_on);
-      }
-      const Row count = Lanes::zero() - on.partners;
-      partners = Lanes::maximum(Lanes::load(balls.is_mass + m) * count, partners);
-      now.enter(i, on.force, way);
-      if constexpr (kViscous) now_viscous.enter(i, viscous_on.force, way);
-      if (is_one_plane) {
-        Lanes::store(balls.factor + m, factors.all);
-        if constexpr (kViscous) Lanes::store(balls.viscous_factor + m, factors.viscous);
-      } else {
-        Lanes::store_columns(members.force + 4 * m, on.force, count);
-        if constexpr (kViscous)
-          Lanes::store_columns(members.viscous + 4 * m, viscous_on.force,
-                               Lanes::zero() - viscous_on.partners);
-      }
-      const Row nothing = Lanes::every(-0.0);  // changes no force, not even one of -0
-      Lanes::add(
-          force, column + i,
-          {Lanes::select(listed, on.force.x, nothing), Lanes::select(listed, on.force.y, nothing),
-           Lanes::select(listed, on.force.z, nothing)});
+      const SomeBalls<Lanes> some{
+          listed, place,
+          only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z}),
+          balls.radius == nullptr ? nullptr : balls.radius + m};
+      end_last_forces<Lanes, kViscous>(planes, balls, members, m, i, some.way, works);
+      const ForcesOnBalls<Lanes> on =
+          is_one_plane ? step_with_one_plane<Lanes, kViscous>(pair, planes[first_plane], balls, m,
+                                                              i, some, sums[first_plane], works)
+                       : step_with_planes<Lanes, kViscous>(pair, planes, balls, m, i, some, sums,
+                                                           members, works);
+      works.now.enter(i, on.force, some.way);
+      less_partners = Lanes::minimum(Lanes::load(balls.is_mass + m) * on.partners, less_partners);
+      give_forces_to<Lanes>(force, column, is_run, listed, on.force);
     }
-    balls.held_plane[batch] =
-        is_one_plane ? static_cast<std::uint8_t>(__builtin_ctzll(near_planes)) : kNoPlane;
-    add_batch<Lanes>(last.batch, last.sums);
-    add_batch<Lanes>(now.batch, now.sums);
-    if constexpr (kViscous) {
-      add_batch<Lanes>(last_viscous.batch, last_viscous.sums);
-      add_batch<Lanes>(now_viscous.batch, now_viscous.sums);
-    }
-    const auto take_position = [&](std::size_t i) noexcept {
-      Lanes::store_column(members.position + 4 * (first + i),
-                          Lanes::load_column(position + column[i]));
-    };
-    if (listed_of_batch == kAll) {
-#pragma GCC unroll 8
-      for (std::size_t i = 0; i < kPairBatch; ++i) take_position(i);
-    } else {
-      for (unsigned left = listed_of_batch; left != 0U; left &= left - 1U)
-        take_position(static_cast<std::size_t>(__builtin_ctz(left)));
-    }
+    works.template end_batch<kViscous>();
+    balls.held_plane[batch] = is_one_plane ? static_cast<std::uint8_t>(first_plane) : kNoPlane;
+    take_places<Lanes>(balls, batch, position, members.position);
   }
 
   for (std::size_t a = 0; a < balls.plane_count; ++a) {
@@ -275,15 +352,16 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
                      members.viscous + 4 * a);
     sums[a].count = 0;
   }
-  Lanes::store_column(works.last.all, last.sums);
-  Lanes::store_column(works.now.all, now.sums);
+  Lanes::store_column(result.last.all, works.last.sums);
+  Lanes::store_column(result.now.all, works.now.sums);
   if constexpr (kViscous) {
-    Lanes::store_column(works.last.viscous, last_viscous.sums);
-    Lanes::store_column(works.now.viscous, now_viscous.sums);
+    Lanes::store_column(result.last.viscous, works.last_viscous.sums);
+    Lanes::store_column(result.now.viscous, works.now_viscous.sums);
   }
   alignas(64) double lane[Lanes::kWidth];
-  Lanes::store(lane, partners);
-  for (const double most : lane) works.partners = most > works.partners ? most : works.partners;
+  Lanes::store(lane, less_partners);
+  for (const double least : lane)
+    result.partners = -least > result.partners ? -least : result.partners;
 }
 
 template <class Lanes>

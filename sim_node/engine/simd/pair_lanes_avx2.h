@@ -47,6 +47,16 @@ struct Avx2PairLanes : Avx2Lanes {
     for (std::size_t l = 0; l < 4; ++l)
       store(columns + offset[l], load(columns + offset[l]) + column[l]);
   }
+  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
+    Row column[4];
+    columns_of(v, zero(), column);
+#pragma GCC unroll 4
+    for (std::size_t l = 0; l < 4; ++l) store(columns + 4 * l, load(columns + 4 * l) + column[l]);
+  }
+  static void copy_neighbours(double* columns, const double* from) noexcept {
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4 * kWidth; i += kWidth) store(columns + i, load(from + i));
+  }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
     Row column[4];
     columns_of(v, w, column);

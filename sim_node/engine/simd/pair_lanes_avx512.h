@@ -15,9 +15,19 @@ struct Avx512PairLanes : Avx512Lanes {
                       two_columns(columns + offset[3], columns + offset[7]));
   }
   static Row3 neighbours(const double* columns) noexcept {
-    return transposed(two_columns(columns, columns + 16), two_columns(columns + 4, columns + 20),
-                      two_columns(columns + 8, columns + 24),
-                      two_columns(columns + 12, columns + 28));
+    const Row c01 = load_any(columns);
+    const Row c23 = load_any(columns + 8);
+    const Row c45 = load_any(columns + 16);
+    const Row c67 = load_any(columns + 24);
+    const Row xz0123 = _mm512_unpacklo_pd(c01, c23);  // x0 x2 z0 z2  x1 x3 z1 z3
+    const Row xz4567 = _mm512_unpacklo_pd(c45, c67);
+    const Row y0123 = _mm512_unpackhi_pd(c01, c23);  // y0 y2 . .  y1 y3 . .
+    const Row y4567 = _mm512_unpackhi_pd(c45, c67);
+    const __m512i first = _mm512_setr_epi64(0, 4, 1, 5, 8, 12, 9, 13);
+    const __m512i second = _mm512_setr_epi64(2, 6, 3, 7, 10, 14, 11, 15);
+    return {_mm512_permutex2var_pd(xz0123, first, xz4567),
+            _mm512_permutex2var_pd(y0123, first, y4567),
+            _mm512_permutex2var_pd(xz0123, second, xz4567)};
   }
   static void subtract(double* columns, const std::uint32_t* offset, const Row3& v,
                        Row w) noexcept {
@@ -43,6 +53,16 @@ struct Avx512PairLanes : Avx512Lanes {
     for (std::size_t l = 0; l < 4; ++l) {
       add_column(columns + offset[l + 4], _mm512_extractf64x4_pd(pairs[l], 1));
     }
+  }
+  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
+    add_two(columns, v, _mm512_setr_epi64(0, 8, 0, 0, 1, 9, 1, 1));
+    add_two(columns + 8, v, _mm512_setr_epi64(2, 10, 2, 2, 3, 11, 3, 3));
+    add_two(columns + 16, v, _mm512_setr_epi64(4, 12, 4, 4, 5, 13, 5, 5));
+    add_two(columns + 24, v, _mm512_setr_epi64(6, 14, 6, 6, 7, 15, 7, 7));
+  }
+  static void copy_neighbours(double* columns, const double* from) noexcept {
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4 * kWidth; i += kWidth) store_any(columns + i, load_any(from + i));
   }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
     Row pairs[4];
@@ -83,6 +103,13 @@ struct Avx512PairLanes : Avx512Lanes {
   }
   static Column sum_halves(Row v) noexcept {
     return _mm512_castpd512_pd256(v) + _mm512_extractf64x4_pd(v, 1);
+  }
+  /// Adds the vectors of two lanes to their columns.
+  /// @param lanes  of x and of y (8 more), in the places of x, y and z in both columns
+  static void add_two(double* columns, const Row3& v, __m512i lanes) noexcept {
+    const Row xy = _mm512_maskz_permutex2var_pd(0x33, v.x, lanes, v.y);
+    const Row xyz = _mm512_mask_permutexvar_pd(xy, 0x44, lanes, v.z);
+    store_any(columns, load_any(columns) + xyz);
   }
   static void subtract_column(double* column, Column v) noexcept {
     store_column(column, load_column(column) - v);

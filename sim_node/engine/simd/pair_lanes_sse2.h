@@ -28,6 +28,13 @@ struct Sse2PairLanes : Sse2Lanes {
     store_column(columns + offset[0], load_column(columns + offset[0]) + first);
     store_column(columns + offset[1], load_column(columns + offset[1]) + second);
   }
+  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
+    constexpr std::uint32_t kOffsets[kWidth] = {0, 4};
+    add(columns, kOffsets, v);
+  }
+  static void copy_neighbours(double* columns, const double* from) noexcept {
+    for (std::size_t i = 0; i < 4 * kWidth; i += kWidth) store(columns + i, load(from + i));
+  }
   static void store_columns(double* columns, const Row3& v, Row w) noexcept {
     store_column(columns, {_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, w)});
     store_column(columns + 4, {_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, w)});

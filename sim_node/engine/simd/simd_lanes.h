@@ -77,6 +77,9 @@ concept SimdPairLanes = SimdLanes<Lanes> &&
   Lanes::subtract(out, offset, vectors, row);
   // adds vectors to the columns at `at`, one after the other
   Lanes::add(out, offset, vectors);
+  // likewise to columns that follow one another; copies such columns
+  Lanes::add_to_neighbours(out, vectors);
+  Lanes::copy_neighbours(out, in);
   // writes vectors and their fourth values as columns that follow one another
   Lanes::store_columns(out, vectors, row);
   // the sums of the 8 places of a batch of x, y, z and w: ((0 + 4) + (2 + 6)) + ((1 + 5) + (3 + 7))
