@@ -32,14 +32,17 @@ PlaneContacts::PlaneContacts(const NetworkDescription& network, const SetLiaison
   for (const auto* half : {&set.set_p, &set.set_q}) {
     for (const std::uint32_t mat : *half) {
       column_.push_back(4 * mat);
-      is_mass_.push_back(network.mats[mat].kind == MatKind::kMass ? 1.0 : 0.0);
       if (has_radii) radius_.push_back(network.radius[mat]);
     }
   }
   const std::size_t padded_count = padded(column_.size(), kPairBatch);
   column_.resize(padded_count, column_.back());
-  is_mass_.resize(padded_count, 0.0);
   if (has_radii) radius_.resize(padded_count, 0.0);
+  masses_.resize(padded_count / kPairBatch, 0);
+  for (std::size_t m = 0; m < set.set_p.size() + set.set_q.size(); ++m) {
+    if (network.mats[column_[m] / 4].kind == MatKind::kMass)
+      masses_[m / kPairBatch] |= static_cast<std::uint8_t>(1U << m % kPairBatch);
+  }
   for (std::size_t m = 0; m < padded_count; m += kPairBatch) {
     is_run_.push_back(1);
     for (std::size_t i = 1; i < kPairBatch; ++i)
@@ -63,9 +66,9 @@ PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
     plane.moved = plane.normal[0] * way[0] + plane.normal[1] * way[1] + plane.normal[2] * way[2];
   }
   const PlaneBalls balls{
-      column_.data(),  is_run_.data(),         radius_.empty() ? nullptr : radius_.data(),
-      is_mass_.data(), surfaces.batches(),     held_plane_.data(),
-      factor_.data(),  viscous_factor_.data(), planes_.size(),
+      column_.data(), is_run_.data(),         radius_.empty() ? nullptr : radius_.data(),
+      masses_.data(), surfaces.batches(),     held_plane_.data(),
+      factor_.data(), viscous_factor_.data(), planes_.size(),
       range_};
   PlaneWorks works;
   kernel.step_planes(pair, planes_.data(), balls, columns, members, sums_.data(), works);

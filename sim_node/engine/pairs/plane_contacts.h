@@ -59,7 +59,7 @@ class PlaneContacts {
   AlignedVector<std::uint32_t> column_;  // of the MAT of each member, padded
   std::vector<std::uint8_t> is_run_;     // see PlaneBalls
   AlignedVector<double> radius_;  // of each member, padded; empty when the rest length is given [m]
-  AlignedVector<double> is_mass_;         // of each member, padded: 1 or 0
+  std::vector<std::uint8_t> masses_;      // likewise
   std::vector<std::uint8_t> held_plane_;  // see PlaneBalls
   AlignedVector<double> factor_;
   AlignedVector<double> viscous_factor_;

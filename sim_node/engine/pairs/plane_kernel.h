@@ -26,13 +26,16 @@ struct PlaneRow {
 
 /// What the pairs of a plane give to it: their sums by the place in the batch, and the factors of pairs
 /// that are yet to be added.
-struct alignas(64) PlaneSum {
+struct alignas(64) FactorSum {
   static constexpr std::size_t kRoom = 64;  // of factors, whole batches
   double factor[kRoom + 2 * kPairBatch];
-  double viscous_factor[kRoom + 2 * kPairBatch];
-  double force[4][kPairBatch];  // x, y, z and less the partners
-  double viscous[4][kPairBatch];
-  std::size_t count;  // of factors
+  double force[3][kPairBatch];  // x, y and z
+  std::size_t partners;
+};
+struct PlaneSum {
+  FactorSum all;
+  FactorSum viscous;
+  std::size_t count;  // of factors that are yet to be added
 };
 
 /// Members of a set in batches of 8. What has been listed since the last step, and is no longer, counts too.
@@ -50,7 +53,7 @@ struct PlaneBalls {
   const std::uint32_t* column = nullptr;  // of the MAT of each member; of padding, that of any ball
   const std::uint8_t* is_run = nullptr;   // of each batch: 1 where its columns follow one another
   const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
-  const double* is_mass = nullptr;  // of each member: 1 or 0
+  const std::uint8_t* masses = nullptr;  // of each batch: bits of masses
   ListedBatches batches;
   // The forces of the last step on the balls of a batch: factor * normal is taken from each by the plane whose
   // pairs are held so; with kNoPlane they stand in MemberValues.
@@ -63,9 +66,9 @@ struct PlaneBalls {
 
 /// What one step of such a set has done.
 struct PlaneWorks {
-  MemberWorks last;       // by the forces of the last step
-  MemberWorks now;        // and by those of this one
-  double partners = 0.0;  // of a mass among the balls, at most
+  MemberWorks last;            // by the forces of the last step
+  MemberWorks now;             // and by those of this one
+  std::uint32_t partners = 0;  // of a mass among the balls, at most
 };
 
 }  // namespace cordis::engine

@@ -23,91 +23,65 @@ typename Lanes::Row3 only(typename Lanes::Mask mask, const typename Lanes::Row3&
           Lanes::select(mask, v.z, Lanes::zero())};
 }
 
-/// Forces on a register of balls, and less their partners.
+/// Bits of the factors that are not 0: each counts for a partner.
 template <class Lanes>
-struct ForcesOnBalls {
-  typename Lanes::Row3 force{Lanes::zero(), Lanes::zero(), Lanes::zero()};
-  typename Lanes::Row partners = Lanes::zero();
-};
-
-/// Takes factor * normal from the forces; a factor that is 0 counts for no partner.
-template <class Lanes>
-void take_pairs(const typename Lanes::Row3& normal, typename Lanes::Row factor,
-                ForcesOnBalls<Lanes>& on) noexcept {
-  on.force.x = on.force.x - normal.x * factor;
-  on.force.y = on.force.y - normal.y * factor;
-  on.force.z = on.force.z - normal.z * factor;
-  on.partners = on.partners + less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
+unsigned partners_of(typename Lanes::Row factor) noexcept {
+  return Lanes::bits(Lanes::not_equal(factor, Lanes::zero()));
 }
 
-/// The force of a pair on its ball.
-template <class Lanes>
-typename Lanes::Row3 force_of_pair(const typename Lanes::Row3& normal,
-                                   typename Lanes::Row factor) noexcept {
-  return {Lanes::zero() - normal.x * factor, Lanes::zero() - normal.y * factor,
-          Lanes::zero() - normal.z * factor};
+inline std::size_t count_of(unsigned bits) noexcept {
+  return static_cast<std::size_t>(__builtin_popcount(bits));
 }
 
 /// Adds whole batches of factors to the sums of a plane.
-/// @param sums  x, y, z and less the partners, by the place in the batch
 template <class Lanes>
-void add_factors(const PlaneRow& plane, const double* factor, std::size_t count,
-                 double (*sums)[kPairBatch]) noexcept {
+void add_factors(const PlaneRow& plane, std::size_t count, FactorSum& sum) noexcept {
   using Row = typename Lanes::Row;
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
 #pragma GCC unroll 4
   for (std::size_t place = 0; place < kPairBatch; place += Lanes::kWidth) {
-    Row x = Lanes::load(sums[0] + place);
-    Row y = Lanes::load(sums[1] + place);
-    Row z = Lanes::load(sums[2] + place);
-    Row partners = Lanes::load(sums[3] + place);
+    Row x = Lanes::load(sum.force[0] + place);
+    Row y = Lanes::load(sum.force[1] + place);
+    Row z = Lanes::load(sum.force[2] + place);
     for (std::size_t i = place; i < count; i += kPairBatch) {
-      const Row of_pair = Lanes::load(factor + i);
-      x = x + normal.x * of_pair;
-      y = y + normal.y * of_pair;
-      z = z + normal.z * of_pair;
-      partners = partners + less_one<Lanes>(Lanes::not_equal(of_pair, Lanes::zero()));
+      const Row factor = Lanes::load(sum.factor + i);
+      x = x + normal.x * factor;
+      y = y + normal.y * factor;
+      z = z + normal.z * factor;
     }
-    Lanes::store(sums[0] + place, x);
-    Lanes::store(sums[1] + place, y);
-    Lanes::store(sums[2] + place, z);
-    Lanes::store(sums[3] + place, partners);
+    Lanes::store(sum.force[0] + place, x);
+    Lanes::store(sum.force[1] + place, y);
+    Lanes::store(sum.force[2] + place, z);
   }
 }
 
 /// Adds the first factors, and moves what is left to the beginning.
-template <class Lanes, bool kViscous>
-void add_full_batches(const PlaneRow& plane, PlaneSum& sum) noexcept {
-  add_factors<Lanes>(plane, sum.factor, PlaneSum::kRoom, sum.force);
-  if constexpr (kViscous)
-    add_factors<Lanes>(plane, sum.viscous_factor, PlaneSum::kRoom, sum.viscous);
-  for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth) {
-    Lanes::store(sum.factor + i, Lanes::load(sum.factor + PlaneSum::kRoom + i));
-    if constexpr (kViscous)
-      Lanes::store(sum.viscous_factor + i, Lanes::load(sum.viscous_factor + PlaneSum::kRoom + i));
-  }
-  sum.count -= PlaneSum::kRoom;
+template <class Lanes>
+void add_full_batches(const PlaneRow& plane, FactorSum& sum) noexcept {
+  add_factors<Lanes>(plane, FactorSum::kRoom, sum);
+  for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
+    Lanes::store(sum.factor + i, Lanes::load(sum.factor + FactorSum::kRoom + i));
 }
 
 /// Adds all factors, writes the sums to a column, and empties them.
 template <class Lanes>
-void end_sum(const PlaneRow& plane, double* factor, std::size_t count, double (*sums)[kPairBatch],
-             double* column) noexcept {
+void end_sum(const PlaneRow& plane, std::size_t count, FactorSum& sum, double* column) noexcept {
   for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
-    Lanes::store_any(factor + count + i, Lanes::zero());
-  add_factors<Lanes>(plane, factor, count, sums);
-  RowSum<Lanes> all;
+    Lanes::store_any(sum.factor + count + i, Lanes::zero());
+  add_factors<Lanes>(plane, count, sum);
+  RowSum<Lanes> all = no_force<Lanes>();
   for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
     const std::size_t place = part * Lanes::kWidth;
-    all.x[part] = Lanes::load(sums[0] + place);
-    all.y[part] = Lanes::load(sums[1] + place);
-    all.z[part] = Lanes::load(sums[2] + place);
-    all.partners[part] = Lanes::load(sums[3] + place);
-    for (std::size_t which = 0; which < 4; ++which)
-      Lanes::store(sums[which] + place, Lanes::zero());
+    all.x[part] = Lanes::load(sum.force[0] + place);
+    all.y[part] = Lanes::load(sum.force[1] + place);
+    all.z[part] = Lanes::load(sum.force[2] + place);
+    for (double* axis : {sum.force[0], sum.force[1], sum.force[2]})
+      Lanes::store(axis + place, Lanes::zero());
   }
   Lanes::store_column(column, Lanes::broadcast(0.0));
   give<Lanes>(all, column);
+  column[3] = static_cast<double>(sum.partners);
+  sum.partners = 0;
 }
 
 /// A register of balls.
@@ -117,6 +91,7 @@ struct SomeBalls {
   typename Lanes::Row3 place;
   typename Lanes::Row3 way;  // 0 of those that are not listed
   const double* radius;      // null: the rest length is that of the plane
+  unsigned masses;           // bits
 };
 
 /// Factors of the pairs of a register of balls with one plane, 0 out of range.
@@ -124,12 +99,15 @@ template <class Lanes>
 struct PlaneFactors {
   typename Lanes::Row all = Lanes::zero();
   typename Lanes::Row viscous = Lanes::zero();
+  unsigned partners = 0;  // bits of the balls that the plane pushes or pulls
 };
 
 /// Finds the pairs of a register of balls with one plane, and adds them to the sums of the plane.
 template <class Lanes, bool kViscous>
-PlaneFactors<Lanes> find_factors(const LinearPair& pair, const PlaneRow& plane, double range,
-                                 const SomeBalls<Lanes>& balls, PlaneSum& sum) noexcept {
+[[gnu::always_inline]] inline PlaneFactors<Lanes> find_factors(const LinearPair& pair,
+                                                               const PlaneRow& plane, double range,
+                                                               const SomeBalls<Lanes>& balls,
+                                                               PlaneSum& sum) noexcept {
   using Row = typename Lanes::Row;
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
   const typename Lanes::Row3 centre = every<Lanes>(plane.centre);
@@ -149,14 +127,21 @@ PlaneFactors<Lanes> find_factors(const LinearPair& pair, const PlaneRow& plane, 
   const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
   factors.all = Lanes::select(near, limited, Lanes::zero());
   const std::size_t count = sum.count;
-  Lanes::pack(sum.factor + count, factors.all, chosen);
+  Lanes::pack(sum.all.factor + count, factors.all, chosen);
+  factors.partners = partners_of<Lanes>(factors.all);
+  sum.all.partners += count_of(factors.partners);
   if constexpr (kViscous) {
     const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
     factors.viscous = Lanes::select(near, limited - stored, Lanes::zero());
-    Lanes::pack(sum.viscous_factor + count, factors.viscous, chosen);
+    Lanes::pack(sum.viscous.factor + count, factors.viscous, chosen);
+    sum.viscous.partners += count_of(partners_of<Lanes>(factors.viscous));
   }
-  sum.count = count + static_cast<std::size_t>(__builtin_popcount(chosen));
-  if (sum.count >= PlaneSum::kRoom) add_full_batches<Lanes, kViscous>(plane, sum);
+  sum.count = count + count_of(chosen);
+  if (sum.count >= FactorSum::kRoom) {
+    add_full_batches<Lanes>(plane, sum.all);
+    if constexpr (kViscous) add_full_batches<Lanes>(plane, sum.viscous);
+    sum.count -= FactorSum::kRoom;
+  }
   return factors;
 }
 
@@ -167,16 +152,18 @@ void add_batch(const double* work, typename Lanes::Column& sums) noexcept {
   sums = sums + Lanes::load_column(work + 4);
 }
 
-/// The works of a batch, and their sums.
+/// What the forces of a batch have taken, and the sums of it: less the works.
 template <class Lanes>
 struct WorksOfBatches {
   alignas(64) double batch[kPairBatch];
   typename Lanes::Column sums = Lanes::broadcast(0.0);
 
-  void enter(std::size_t place, const typename Lanes::Row3& force,
+  /// @param taken  the force is less this
+  void enter(std::size_t place, const typename Lanes::Row3& taken,
              const typename Lanes::Row3& way) noexcept {
-    Lanes::store(batch + place, dot<Lanes>(force, way));
+    Lanes::store(batch + place, dot<Lanes>(taken, way));
   }
+  void write(double* works) noexcept { Lanes::store_column(works, Lanes::broadcast(0.0) - sums); }
 };
 
 /// The works of all batches.
@@ -198,29 +185,37 @@ struct WorksOfStep {
   }
 };
 
+/// Vectors of columns that follow one another, with the other sign.
+template <class Lanes>
+typename Lanes::Row3 less_neighbours(const double* columns) noexcept {
+  const typename Lanes::Row3 v = Lanes::neighbours(columns);
+  return {Lanes::zero() - v.x, Lanes::zero() - v.y, Lanes::zero() - v.z};
+}
+
 /// Enters what the last forces of a register of balls have done, from member m on, place i of its batch.
 template <class Lanes, bool kViscous>
-void end_last_forces(const PlaneRow* planes, const PlaneBalls& balls, const MemberValues& members,
-                     std::size_t m, std::size_t i, const typename Lanes::Row3& way,
-                     WorksOfStep<Lanes>& works) noexcept {
+[[gnu::always_inline]] inline void end_last_forces(const PlaneRow* planes, const PlaneBalls& balls,
+                                                   const MemberValues& members, std::size_t m,
+                                                   std::size_t i, const typename Lanes::Row3& way,
+                                                   WorksOfStep<Lanes>& works) noexcept {
   const std::size_t held = balls.held_plane[m / kPairBatch];
   if (held == kNoPlane) {
-    works.last.enter(i, Lanes::neighbours(members.force + 4 * m), way);
+    works.last.enter(i, less_neighbours<Lanes>(members.force + 4 * m), way);
     if constexpr (kViscous)
-      works.last_viscous.enter(i, Lanes::neighbours(members.viscous + 4 * m), way);
+      works.last_viscous.enter(i, less_neighbours<Lanes>(members.viscous + 4 * m), way);
     return;
   }
   const typename Lanes::Row3 normal = every<Lanes>(planes[held].normal);
-  works.last.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.factor + m)), way);
+  works.last.enter(i, scaled<Lanes>(normal, Lanes::load(balls.factor + m)), way);
   if constexpr (kViscous)
-    works.last_viscous.enter(i, force_of_pair<Lanes>(normal, Lanes::load(balls.viscous_factor + m)),
-                             way);
+    works.last_viscous.enter(i, scaled<Lanes>(normal, Lanes::load(balls.viscous_factor + m)), way);
 }
 
 /// Takes the places of the balls of a batch that are listed.
 template <class Lanes>
-void take_places(const PlaneBalls& balls, std::size_t batch, const double* position,
-                 double* own_position) noexcept {
+[[gnu::always_inline]] inline void take_places(const PlaneBalls& balls, std::size_t batch,
+                                               const double* position,
+                                               double* own_position) noexcept {
   const std::uint32_t* const column = balls.column + kPairBatch * batch;
   double* const own = own_position + 4 * kPairBatch * batch;
   const unsigned listed = balls.batches.balls[batch];
@@ -236,30 +231,49 @@ void take_places(const PlaneBalls& balls, std::size_t batch, const double* posit
 }
 
 /// Finds the forces of a register of balls with one plane, and keeps their factors.
+/// @return less the forces
 template <class Lanes, bool kViscous>
-ForcesOnBalls<Lanes> step_with_one_plane(const LinearPair& pair, const PlaneRow& plane,
-                                         const PlaneBalls& balls, std::size_t m, std::size_t i,
-                                         const SomeBalls<Lanes>& some, PlaneSum& sum,
-                                         WorksOfStep<Lanes>& works) noexcept {
+[[gnu::always_inline]] inline typename Lanes::Row3 step_with_one_plane(
+    const LinearPair& pair, const PlaneRow& plane, const PlaneBalls& balls, std::size_t m,
+    std::size_t i, const SomeBalls<Lanes>& some, PlaneSum& sum, WorksOfStep<Lanes>& works,
+    std::uint32_t& largest_partners) noexcept {
   const PlaneFactors<Lanes> factors =
       find_factors<Lanes, kViscous>(pair, plane, balls.range, some, sum);
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
   Lanes::store(balls.factor + m, factors.all);
   if constexpr (kViscous) {
     Lanes::store(balls.viscous_factor + m, factors.viscous);
-    works.now_viscous.enter(i, force_of_pair<Lanes>(normal, factors.viscous), some.way);
+    works.now_viscous.enter(i, scaled<Lanes>(normal, factors.viscous), some.way);
   }
-  return {force_of_pair<Lanes>(normal, factors.all),
-          less_one<Lanes>(Lanes::not_equal(factors.all, Lanes::zero()))};
+  if (largest_partners == 0 && (factors.partners & some.masses) != 0U) largest_partners = 1;
+  return scaled<Lanes>(normal, factors.all);
 }
+
+/// Forces on a register of balls, and their partners.
+template <class Lanes>
+struct ForcesOnBalls {
+  typename Lanes::Row3 force{Lanes::zero(), Lanes::zero(), Lanes::zero()};
+  typename Lanes::Row partners = Lanes::zero();
+
+  /// A factor that is 0 counts for no partner.
+  void take_pairs(const typename Lanes::Row3& normal, typename Lanes::Row factor) noexcept {
+    force.x = force.x - normal.x * factor;
+    force.y = force.y - normal.y * factor;
+    force.z = force.z - normal.z * factor;
+    partners = partners - less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
+  }
+  typename Lanes::Row3 less_force() const noexcept {
+    return {Lanes::zero() - force.x, Lanes::zero() - force.y, Lanes::zero() - force.z};
+  }
+};
 
 /// Likewise with several planes, whose forces are summed; keeps the sums.
 template <class Lanes, bool kViscous>
-ForcesOnBalls<Lanes> step_with_planes(const LinearPair& pair, const PlaneRow* planes,
+typename Lanes::Row3 step_with_planes(const LinearPair& pair, const PlaneRow* planes,
                                       const PlaneBalls& balls, std::size_t m, std::size_t i,
                                       const SomeBalls<Lanes>& some, PlaneSum* sums,
-                                      const MemberValues& members,
-                                      WorksOfStep<Lanes>& works) noexcept {
+                                      const MemberValues& members, WorksOfStep<Lanes>& works,
+                                      std::uint32_t& largest_partners) noexcept {
   ForcesOnBalls<Lanes> on;
   ForcesOnBalls<Lanes> viscous_on;
   for (std::uint64_t left = balls.batches.surfaces[m / kPairBatch]; left != 0U; left &= left - 1U) {
@@ -267,39 +281,27 @@ ForcesOnBalls<Lanes> step_with_planes(const LinearPair& pair, const PlaneRow* pl
     const PlaneFactors<Lanes> factors =
         find_factors<Lanes, kViscous>(pair, planes[plane], balls.range, some, sums[plane]);
     const typename Lanes::Row3 normal = every<Lanes>(planes[plane].normal);
-    take_pairs<Lanes>(normal, factors.all, on);
-    if constexpr (kViscous) take_pairs<Lanes>(normal, factors.viscous, viscous_on);
+    on.take_pairs(normal, factors.all);
+    if constexpr (kViscous) viscous_on.take_pairs(normal, factors.viscous);
   }
-  Lanes::store_columns(members.force + 4 * m, on.force, Lanes::zero() - on.partners);
+  Lanes::store_columns(members.force + 4 * m, on.force, on.partners);
   if constexpr (kViscous) {
-    works.now_viscous.enter(i, viscous_on.force, some.way);
-    Lanes::store_columns(members.viscous + 4 * m, viscous_on.force,
-                         Lanes::zero() - viscous_on.partners);
+    works.now_viscous.enter(i, viscous_on.less_force(), some.way);
+    Lanes::store_columns(members.viscous + 4 * m, viscous_on.force, viscous_on.partners);
   }
-  return on;
-}
-
-/// Gives the forces of a register of balls that are listed to their MATs.
-template <class Lanes>
-void give_forces_to(double* force, const std::uint32_t* column, bool is_run,
-                    typename Lanes::Mask listed, const typename Lanes::Row3& v) noexcept {
-  const typename Lanes::Row nothing =
-      Lanes::every(-0.0);  // it changes no force, not even one of -0
-  const typename Lanes::Row3 given{Lanes::select(listed, v.x, nothing),
-                                   Lanes::select(listed, v.y, nothing),
-                                   Lanes::select(listed, v.z, nothing)};
-  if (is_run) {
-    Lanes::add_to_neighbours(force + *column, given);
-  } else {
-    Lanes::add(force, column, given);
+  alignas(64) double partners[Lanes::kWidth];
+  Lanes::store(partners, Lanes::select(Lanes::mask(some.masses), on.partners, Lanes::zero()));
+  for (const double of_ball : partners) {
+    const auto count = static_cast<std::uint32_t>(of_ball);
+    largest_partners = count > largest_partners ? count : largest_partners;
   }
+  return on.less_force();
 }
 
 template <class Lanes, bool kViscous>
 void step_near_planes(const LinearPair& law, const PlaneRow* planes, const PlaneBalls& all_balls,
                       const ForceColumns& mats, const MemberValues& all_members, PlaneSum* sums,
                       PlaneWorks& result) noexcept {
-  using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const LinearPair pair = law;
   const PlaneBalls balls = all_balls;
@@ -308,7 +310,7 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   const double* const delayed = mats.delayed;
   double* const force = mats.force;
   WorksOfStep<Lanes> works;
-  Row less_partners = Lanes::zero();
+  std::uint32_t partners = 0;
 
   for (std::size_t batch = 0; batch < balls.batches.count; ++batch) {
     const std::uint64_t near_planes = balls.batches.surfaces[batch];
@@ -329,16 +331,22 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
       const SomeBalls<Lanes> some{
           listed, place,
           only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z}),
-          balls.radius == nullptr ? nullptr : balls.radius + m};
+          balls.radius == nullptr ? nullptr : balls.radius + m,
+          balls.masses[batch] >> i & first_lanes<Lanes>(Lanes::kWidth)};
       end_last_forces<Lanes, kViscous>(planes, balls, members, m, i, some.way, works);
-      const ForcesOnBalls<Lanes> on =
-          is_one_plane ? step_with_one_plane<Lanes, kViscous>(pair, planes[first_plane], balls, m,
-                                                              i, some, sums[first_plane], works)
-                       : step_with_planes<Lanes, kViscous>(pair, planes, balls, m, i, some, sums,
-                                                           members, works);
-      works.now.enter(i, on.force, some.way);
-      less_partners = Lanes::minimum(Lanes::load(balls.is_mass + m) * on.partners, less_partners);
-      give_forces_to<Lanes>(force, column, is_run, listed, on.force);
+      // 0 of balls that are not listed, and no force on a MAT is -0
+      const Row3 taken =
+          is_one_plane
+              ? step_with_one_plane<Lanes, kViscous>(pair, planes[first_plane], balls, m, i, some,
+                                                     sums[first_plane], works, partners)
+              : step_with_planes<Lanes, kViscous>(pair, planes, balls, m, i, some, sums, members,
+                                                  works, partners);
+      works.now.enter(i, taken, some.way);
+      if (is_run) {
+        Lanes::subtract_from_neighbours(force + *column, taken);
+      } else {
+        Lanes::subtract(force, column, taken, Lanes::zero());
+      }
     }
     works.template end_batch<kViscous>();
     balls.held_plane[batch] = is_one_plane ? static_cast<std::uint8_t>(first_plane) : kNoPlane;
@@ -346,22 +354,18 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   }
 
   for (std::size_t a = 0; a < balls.plane_count; ++a) {
-    end_sum<Lanes>(planes[a], sums[a].factor, sums[a].count, sums[a].force, members.force + 4 * a);
+    end_sum<Lanes>(planes[a], sums[a].count, sums[a].all, members.force + 4 * a);
     if constexpr (kViscous)
-      end_sum<Lanes>(planes[a], sums[a].viscous_factor, sums[a].count, sums[a].viscous,
-                     members.viscous + 4 * a);
+      end_sum<Lanes>(planes[a], sums[a].count, sums[a].viscous, members.viscous + 4 * a);
     sums[a].count = 0;
   }
-  Lanes::store_column(result.last.all, works.last.sums);
-  Lanes::store_column(result.now.all, works.now.sums);
+  works.last.write(result.last.all);
+  works.now.write(result.now.all);
   if constexpr (kViscous) {
-    Lanes::store_column(result.last.viscous, works.last_viscous.sums);
-    Lanes::store_column(result.now.viscous, works.now_viscous.sums);
+    works.last_viscous.write(result.last.viscous);
+    works.now_viscous.write(result.now.viscous);
   }
-  alignas(64) double lane[Lanes::kWidth];
-  Lanes::store(lane, less_partners);
-  for (const double least : lane)
-    result.partners = -least > result.partners ? -least : result.partners;
+  result.partners = partners;
 }
 
 template <class Lanes>

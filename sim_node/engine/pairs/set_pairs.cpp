@@ -287,8 +287,7 @@ StepEnergy SetPairs::add_plane_forces(const ForceColumns& columns) noexcept {
   const PlaneWorks works = planes_.step(kernel_, linear_, surfaces_, columns, values_from(0));
   surfaces_.renew_batches();
   for (std::size_t m = 0; m < count_p_; ++m) give_force(m, columns);
-  const auto partners = static_cast<std::uint32_t>(std::ceil(works.partners));
-  largest_partners_.of_q = std::max(largest_partners_.of_q, partners);
+  largest_partners_.of_q = std::max(largest_partners_.of_q, works.partners);
   StepEnergy energy = energy_of(works.last);
   energy += energy_of(works.now);
   return energy;

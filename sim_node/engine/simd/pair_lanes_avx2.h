@@ -40,18 +40,11 @@ struct Avx2PairLanes : Avx2Lanes {
     for (std::size_t l = 0; l < 4; ++l)
       store(columns + offset[l], load(columns + offset[l]) - column[l]);
   }
-  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
+  static void subtract_from_neighbours(double* columns, const Row3& v) noexcept {
     Row column[4];
     columns_of(v, zero(), column);
 #pragma GCC unroll 4
-    for (std::size_t l = 0; l < 4; ++l)
-      store(columns + offset[l], load(columns + offset[l]) + column[l]);
-  }
-  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
-    Row column[4];
-    columns_of(v, zero(), column);
-#pragma GCC unroll 4
-    for (std::size_t l = 0; l < 4; ++l) store(columns + 4 * l, load(columns + 4 * l) + column[l]);
+    for (std::size_t l = 0; l < 4; ++l) store(columns + 4 * l, load(columns + 4 * l) - column[l]);
   }
   static void copy_neighbours(double* columns, const double* from) noexcept {
 #pragma GCC unroll 4

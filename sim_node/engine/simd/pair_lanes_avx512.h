@@ -42,23 +42,11 @@ struct Avx512PairLanes : Avx512Lanes {
       subtract_column(columns + offset[l + 4], _mm512_extractf64x4_pd(pairs[l], 1));
     }
   }
-  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
-    Row pairs[4];
-    two_by_two(v, zero(), pairs);
-#pragma GCC unroll 4
-    for (std::size_t l = 0; l < 4; ++l) {
-      add_column(columns + offset[l], _mm512_castpd512_pd256(pairs[l]));
-    }
-#pragma GCC unroll 4
-    for (std::size_t l = 0; l < 4; ++l) {
-      add_column(columns + offset[l + 4], _mm512_extractf64x4_pd(pairs[l], 1));
-    }
-  }
-  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
-    add_two(columns, v, _mm512_setr_epi64(0, 8, 0, 0, 1, 9, 1, 1));
-    add_two(columns + 8, v, _mm512_setr_epi64(2, 10, 2, 2, 3, 11, 3, 3));
-    add_two(columns + 16, v, _mm512_setr_epi64(4, 12, 4, 4, 5, 13, 5, 5));
-    add_two(columns + 24, v, _mm512_setr_epi64(6, 14, 6, 6, 7, 15, 7, 7));
+  static void subtract_from_neighbours(double* columns, const Row3& v) noexcept {
+    subtract_two(columns, v, _mm512_setr_epi64(0, 8, 0, 0, 1, 9, 1, 1));
+    subtract_two(columns + 8, v, _mm512_setr_epi64(2, 10, 2, 2, 3, 11, 3, 3));
+    subtract_two(columns + 16, v, _mm512_setr_epi64(4, 12, 4, 4, 5, 13, 5, 5));
+    subtract_two(columns + 24, v, _mm512_setr_epi64(6, 14, 6, 6, 7, 15, 7, 7));
   }
   static void copy_neighbours(double* columns, const double* from) noexcept {
 #pragma GCC unroll 4
@@ -104,18 +92,15 @@ struct Avx512PairLanes : Avx512Lanes {
   static Column sum_halves(Row v) noexcept {
     return _mm512_castpd512_pd256(v) + _mm512_extractf64x4_pd(v, 1);
   }
-  /// Adds the vectors of two lanes to their columns.
+  /// Subtracts the vectors of two lanes from their columns.
   /// @param lanes  of x and of y (8 more), in the places of x, y and z in both columns
-  static void add_two(double* columns, const Row3& v, __m512i lanes) noexcept {
+  static void subtract_two(double* columns, const Row3& v, __m512i lanes) noexcept {
     const Row xy = _mm512_maskz_permutex2var_pd(0x33, v.x, lanes, v.y);
     const Row xyz = _mm512_mask_permutexvar_pd(xy, 0x44, lanes, v.z);
-    store_any(columns, load_any(columns) + xyz);
+    store_any(columns, load_any(columns) - xyz);
   }
   static void subtract_column(double* column, Column v) noexcept {
     store_column(column, load_column(column) - v);
-  }
-  static void add_column(double* column, Column v) noexcept {
-    store_column(column, load_column(column) + v);
   }
 };
 

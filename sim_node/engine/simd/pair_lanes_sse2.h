@@ -22,15 +22,9 @@ struct Sse2PairLanes : Sse2Lanes {
     store_column(columns + offset[0], load_column(columns + offset[0]) - first);
     store_column(columns + offset[1], load_column(columns + offset[1]) - second);
   }
-  static void add(double* columns, const std::uint32_t* offset, const Row3& v) noexcept {
-    const Column first{_mm_unpacklo_pd(v.x, v.y), _mm_unpacklo_pd(v.z, zero())};
-    const Column second{_mm_unpackhi_pd(v.x, v.y), _mm_unpackhi_pd(v.z, zero())};
-    store_column(columns + offset[0], load_column(columns + offset[0]) + first);
-    store_column(columns + offset[1], load_column(columns + offset[1]) + second);
-  }
-  static void add_to_neighbours(double* columns, const Row3& v) noexcept {
+  static void subtract_from_neighbours(double* columns, const Row3& v) noexcept {
     constexpr std::uint32_t kOffsets[kWidth] = {0, 4};
-    add(columns, kOffsets, v);
+    subtract(columns, kOffsets, v, zero());
   }
   static void copy_neighbours(double* columns, const double* from) noexcept {
     for (std::size_t i = 0; i < 4 * kWidth; i += kWidth) store(columns + i, load(from + i));

@@ -75,10 +75,8 @@ concept SimdPairLanes = SimdLanes<Lanes> &&
   { Lanes::neighbours(in) } -> std::same_as<typename Lanes::Row3>;
   // subtracts vectors and their fourth values from the columns at `at`, one after the other
   Lanes::subtract(out, offset, vectors, row);
-  // adds vectors to the columns at `at`, one after the other
-  Lanes::add(out, offset, vectors);
-  // likewise to columns that follow one another; copies such columns
-  Lanes::add_to_neighbours(out, vectors);
+  // subtracts vectors from columns that follow one another; copies such columns
+  Lanes::subtract_from_neighbours(out, vectors);
   Lanes::copy_neighbours(out, in);
   // writes vectors and their fourth values as columns that follow one another
   Lanes::store_columns(out, vectors, row);
