@@ -72,6 +72,40 @@ NetworkDescription string_of_masses() {
   return string;
 }
 
+/// Balls on a plane, each pressed into it by its weight, with viscosity.
+NetworkDescription balls_on_a_plane(double height = 0.0099) {
+  NetworkDescription network;
+  network.step = 1e-4;
+  network.gravity = cordis::engine::Vec3(0.0, -9.81, 0.0);
+  cordis::engine::SetLiaison set;
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    cordis::engine::Mat& mat = network.mats.emplace_back();
+    mat.mass = 0.01;
+    mat.position = cordis::engine::Vec3(0.02 * (i % 50), height, 0.02 * (i / 50));
+    set.set_q.push_back(i);
+  }
+  cordis::engine::Mat& floor = network.mats.emplace_back();
+  floor.kind = cordis::engine::MatKind::kFixed;
+  cordis::engine::Surface plane;
+  plane.mat = 2000;
+  network.surfaces.push_back(plane);
+  cordis::engine::StateMachine contact;
+  contact.states.emplace_back();
+  contact.states[0].stiffness = 1000.0;
+  contact.states[0].viscosity = 0.1;
+  contact.states[0].pulls = false;
+  network.state_machines.push_back(contact);
+  set.set_p.push_back(plane.mat);
+  set.range = 0.01;
+  set.rest_length = 0.01;
+  network.sets.push_back(set);
+  return network;
+}
+
+NetworkDescription balls_above_a_plane() {
+  return balls_on_a_plane(1.0);
+}
+
 Shared by_cordis(const NetworkDescription& network) {
   return std::make_shared<const Network>(network);
 }
@@ -121,6 +155,8 @@ const std::vector<Scene>& scenes() {
       {"heavy_string", heavy_string},
       {"links_with_states", [] { return net_of(cordis::bench::kConditions); }},
       {"links_with_expressions", [] { return net_of(cordis::bench::kExpression); }},
+      {"balls_on_a_plane", [] { return by_cordis(balls_on_a_plane()); }},
+      {"balls_above_a_plane", [] { return by_cordis(balls_above_a_plane()); }},
       {"melt", [] { return cordis::bench::melt(5); }},
       {"large_melt", [] { return cordis::bench::melt(11); }}};
   return all;

@@ -29,7 +29,8 @@ unsigned partners_of(typename Lanes::Row factor) noexcept {
   return Lanes::bits(Lanes::not_equal(factor, Lanes::zero()));
 }
 
-inline std::size_t count_of(unsigned bits) noexcept {
+template <class Lanes>
+std::size_t count_of(unsigned bits) noexcept {
   return static_cast<std::size_t>(__builtin_popcount(bits));
 }
 
@@ -129,14 +130,14 @@ template <class Lanes, bool kViscous>
   const std::size_t count = sum.count;
   Lanes::pack(sum.all.factor + count, factors.all, chosen);
   factors.partners = partners_of<Lanes>(factors.all);
-  sum.all.partners += count_of(factors.partners);
+  sum.all.partners += count_of<Lanes>(factors.partners);
   if constexpr (kViscous) {
     const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
     factors.viscous = Lanes::select(near, limited - stored, Lanes::zero());
     Lanes::pack(sum.viscous.factor + count, factors.viscous, chosen);
-    sum.viscous.partners += count_of(partners_of<Lanes>(factors.viscous));
+    sum.viscous.partners += count_of<Lanes>(partners_of<Lanes>(factors.viscous));
   }
-  sum.count = count + count_of(chosen);
+  sum.count = count + count_of<Lanes>(chosen);
   if (sum.count >= FactorSum::kRoom) {
     add_full_batches<Lanes>(plane, sum.all);
     if constexpr (kViscous) add_full_batches<Lanes>(plane, sum.viscous);

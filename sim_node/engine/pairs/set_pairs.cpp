@@ -676,12 +676,12 @@ ForceOnMember SetPairs::force_on(std::size_t member) const noexcept {
   return force;
 }
 
-/// Half of what the force on a member takes over a way.
-inline StepEnergy SetPairs::work_of(std::size_t member, const double* moved) const noexcept {
-  const ForceOnMember force = force_on(member);
-  const double all = -0.5 * product_of(force.all, moved);
+/// Half of what a force takes over a way.
+inline StepEnergy SetPairs::work_of(const double* force, const double* viscous,
+                                    const double* moved) const noexcept {
+  const double all = -0.5 * product_of(force, moved);
   if (!has_viscous_) return {all, 0.0, 0.0, 0.0};
-  const double dissipated = -0.5 * product_of(force.viscous, moved);
+  const double dissipated = -0.5 * product_of(viscous, moved);
   return {all - dissipated, dissipated, 0.0, 0.0};
 }
 
@@ -715,7 +715,7 @@ StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* tea
     StepEnergy work;
     visit_active([&](std::size_t m) {
       take_position(m, columns);
-      work += work_of(m, moved_.data() + 4 * m);
+      work += work_of(force_.data() + 4 * m, viscous_.data() + 4 * m, moved_.data() + 4 * m);
     });
     return work;
   }
@@ -823,7 +823,7 @@ StepEnergy SetPairs::give_forces(const ForceColumns& columns) noexcept {
   StepEnergy work;
   visit_active([&](std::size_t m) {
     give_force(m, columns);
-    work += work_of(m, moved_.data() + 4 * m);
+    work += work_of(force_.data() + 4 * m, viscous_.data() + 4 * m, moved_.data() + 4 * m);
   });
   return work;
 }
@@ -855,7 +855,8 @@ StepEnergy SetPairs::work_since_last_call(const MatArray& mats) const noexcept {
   StepEnergy work;
   for (std::size_t m = 0; m < column_.size(); ++m) {
     const Vec3 moved = mats.position(column_[m] / 4) - mats.delayed_at_rest(column_[m] / 4);
-    work += work_of(m, moved.data());
+    const ForceOnMember force = force_on(m);
+    work += work_of(force.all, force.viscous, moved.data());
   }
   return work;
 }

@@ -262,7 +262,8 @@ class SetPairs {
   void add_lennard_jones_contacts(const NeighbourRows& rows) noexcept;
   MemberColumns members() const noexcept;
   PairRest rest() const noexcept;
-  StepEnergy work_of(std::size_t member, const double* moved) const noexcept;
+  StepEnergy work_of(const double* force, const double* viscous,
+                     const double* moved) const noexcept;
 
   const PairKernel& kernel_;
   std::uint32_t state_machine_;
