@@ -1,4 +1,4 @@
-// tests/engine/plane_contacts_test.cpp -- balls on planes take one pass, with the bits of the steps for any surface.
+// tests/engine/plane_contacts_test.cpp -- balls on planes, which take one pass.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -150,7 +150,7 @@ TEST(PlaneContacts, GoOnAfterAnotherLiaisonTookTheirPlace) {
   }
 }
 
-/// Those beyond the end of a batch, in any number, and those that are listed with nothing.
+/// The last batch is filled up by 0 to 7 balls; the first one begins with planes.
 TEST(PlaneContacts, OfEveryNumberOfBallsAndPlanesAreTheSame) {
   for (std::uint32_t balls = 1; balls <= 40; ++balls) {
     for (const int plane_count : {1, 2, 9, 64, 65}) {

@@ -1,4 +1,4 @@
-// sim_node/engine/pairs/make_pair_kernel.h -- the loops over pairs of one vector width, put together.
+// sim_node/engine/pairs/make_pair_kernel.h -- the loops over pairs, put together.
 #pragma once
 
 #include "sim_node/engine/pairs/pair_kernel_body.h"

@@ -45,7 +45,7 @@ class PlaneContacts {
   bool holds(std::size_t member) const noexcept {
     return !empty() && member >= planes_.size() && held_plane_[member / kPairBatch] != kNoPlane;
   }
-  /// Of such a member, with the number of its partners [N]. Precondition: it holds that member.
+  /// Force on a member, and the number of its partners [N]. Precondition: holds(member).
   ForceOnMember force(std::size_t member, bool has_viscous) const noexcept;
   /// Writes what it holds. Real time: O(members), no allocation.
   void write_forces(const MemberValues& members) noexcept;

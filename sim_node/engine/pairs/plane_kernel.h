@@ -40,10 +40,8 @@ struct PlaneSum {
 
 /// Members of a set in batches of 8. What has been listed since the last step, and is no longer, counts too.
 struct ListedBatches {
-  const std::uint64_t* surfaces =
-      nullptr;  // of each batch: bits of those that a ball of it is listed with
-  const std::uint8_t* balls =
-      nullptr;  // of each batch: bits of balls that are listed with a surface
+  const std::uint64_t* surfaces = nullptr;  // bits of those that a ball of the batch is listed with
+  const std::uint8_t* balls = nullptr;      // bits of balls that are listed with a surface
   std::size_t count = 0;
 };
 
@@ -55,11 +53,11 @@ struct PlaneBalls {
   const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
   const std::uint8_t* masses = nullptr;  // of each batch: bits of masses
   ListedBatches batches;
-  // The forces of the last step on the balls of a batch: factor * normal is taken from each by the plane whose
-  // pairs are held so; with kNoPlane they stand in MemberValues.
+  // Forces of the last step: -factor * normal of the held plane on each ball of a batch. With kNoPlane they
+  // stand in MemberValues.
   std::uint8_t* held_plane = nullptr;  // of each batch
-  double* factor = nullptr;            // of each member, of the tension
-  double* viscous_factor = nullptr;    // and of the part that stores no energy
+  double* factor = nullptr;            // tension on each member [N]
+  double* viscous_factor = nullptr;    // the part of it that stores no energy [N]
   std::size_t plane_count = 0;
   double range = 0.0;  // [m]
 };

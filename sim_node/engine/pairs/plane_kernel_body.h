@@ -1,5 +1,5 @@
-// sim_node/engine/pairs/plane_kernel_body.h -- the loop over balls near planes, written once over the vector
-// registers of each width.
+// sim_node/engine/pairs/plane_kernel_body.h -- the loop over balls near planes, written once over
+// the vector registers of each width.
 //
 // `Lanes` is a type of SimdPairLanes.
 #pragma once
