@@ -312,9 +312,9 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   state_machines_.begin_step(step);
   friction_.begin_step(step.frozen);
   if (!active_.are_all()) {
-    step_active_rows(step);
+    step_some_rows(step, active_.rows(), active_.row_count());
   } else if (!surfaces_.empty()) {
-    step_rows(step, surfaces_.rows(), members(), block_);
+    step_some_rows(step, surfaces_.near_rows(), count_p_);
   } else {
     for (NeighbourRows rows = neighbours_.first_rows(position_.data()); rows.first < rows.last;
          rows = neighbours_.rows_after(rows, position_.data())) {
@@ -388,14 +388,15 @@ void SetPairs::step_earlier(const PairStep& step, const MemberColumns& members,
   }
 }
 
-void SetPairs::step_active_rows(const PairStep& step) noexcept {
+void SetPairs::step_some_rows(const PairStep& step, const std::vector<NeighbourRows>& some,
+                              std::size_t row_count) noexcept {
   std::size_t next = 0;
-  for (const NeighbourRows& rows : active_.rows()) {
+  for (const NeighbourRows& rows : some) {
     state_machines_.keep_rows(step, next, rows.first);
     step_rows(step, rows, members(), block_);
     next = rows.last;
   }
-  state_machines_.keep_rows(step, next, active_.row_count());
+  state_machines_.keep_rows(step, next, row_count);
 }
 
 /// Visits the members that are computed.
@@ -415,7 +416,7 @@ void SetPairs::visit_with_forces(Visit visit) const noexcept {
     visit_active(visit);
     return;
   }
-  for (std::size_t m = 0; m < count_p_; ++m) visit(m);
+  for (const std::uint32_t m : surfaces_.near()) visit(std::size_t{m});
   for (const std::uint32_t m : surfaces_.members()) visit(std::size_t{m});
 }
 
@@ -426,7 +427,7 @@ void SetPairs::visit_runs(VisitOne visit_one, VisitRun visit_run) const noexcept
     visit_active(visit_one);
     return;
   }
-  for (std::size_t m = 0; m < count_p_; ++m) visit_one(m);
+  for (const std::uint32_t m : surfaces_.near()) visit_one(std::size_t{m});
   const std::vector<std::uint32_t>& balls = surfaces_.members();
   for (std::size_t place = 0; place < balls.size();) {
     const std::size_t count = run_at(place);
@@ -754,6 +755,17 @@ void SetPairs::measure_surfaces(const double* position, const std::vector<std::u
     std::fill_n(viscous_.begin() + own, 4, 0.0);
   });
   list_surfaces();
+}
+
+/// A surface that nothing is near any more has no force.
+void SetPairs::list_surfaces() noexcept {
+  if (!surfaces_.list()) return;
+  surfaces_changed_ = true;
+  for (const std::uint32_t m : surfaces_.left()) {
+    const auto own = static_cast<std::ptrdiff_t>(4 * m);
+    std::fill_n(force_.begin() + own, 4, 0.0);
+    std::fill_n(viscous_.begin() + own, 4, 0.0);
+  }
 }
 
 void SetPairs::clear_forces() noexcept {

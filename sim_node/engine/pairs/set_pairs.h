@@ -37,7 +37,7 @@ namespace cordis::engine {
 ///
 /// Where the first set is surfaces, a pair is a ball and its nearest point of the surface: the distance
 /// has the sign of SurfaceDistance, and the line of centres is the normal. What is far from all
-/// surfaces is compared with its free way once a step, and costs nothing else. Balls on planes that stand
+/// surfaces is compared with its free way once a step, and costs nothing else. Nor do surfaces that stand still. Balls on planes that stand
 /// still take one pass where PlaneContacts can take it.
 ///
 /// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
@@ -204,7 +204,9 @@ class SetPairs {
   void clear_forces_of(std::size_t first, std::size_t count) noexcept;
   /// The first column of padding, after whole batches of members.
   std::size_t padding_begin() const noexcept { return padded(column_.size(), kPairBatch); }
-  void step_active_rows(const PairStep& step) noexcept;
+  /// Steps some rows; the others of so many remember what they did.
+  void step_some_rows(const PairStep& step, const std::vector<NeighbourRows>& some,
+                      std::size_t row_count) noexcept;
   StepEnergy give_forces(const ForceColumns& columns) noexcept;
   void count_partners() noexcept;
   std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
@@ -226,7 +228,7 @@ class SetPairs {
                    Visit visit_far) noexcept;
   void measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                         bool may_leave) noexcept;
-  void list_surfaces() noexcept { surfaces_changed_ = surfaces_.list() || surfaces_changed_; }
+  void list_surfaces() noexcept;
   ForceOnMember force_on(std::size_t member) const noexcept;
   /// From here on the forces of the last step stand in force_ and viscous_.
   void write_forces() noexcept { planes_.write_forces(values_from(0)); }

@@ -49,6 +49,10 @@ SurfaceNeighbours::SurfaceNeighbours(const NetworkDescription& network, const Se
   fill_.resize(shapes_.size() + 1, 0);
   neighbour_.resize(balls * shapes_.size() + kPairBatch, 0U);
   members_.reserve(balls);
+  near_rows_.reserve(shapes_.size());
+  near_ = driven_;
+  near_.reserve(shapes_.size());
+  left_.reserve(shapes_.size());
   if (shapes_.size() > kMaxOfBatches) return;
   const std::size_t batches = padded(shapes_.size() + balls, kPairBatch) / kPairBatch;
   surfaces_of_batch_.resize(batches, 0);
@@ -127,6 +131,24 @@ void SurfaceNeighbours::renew_batches() noexcept {
   }
 }
 
+/// A few rows without pairs cost less than another block of pairs.
+void SurfaceNeighbours::list_near() noexcept {
+  constexpr std::size_t kMaxGap = 8;  // of rows without pairs
+  near_.clear();
+  near_rows_.clear();
+  auto driven = driven_.begin();
+  for (std::size_t s = 0; s < shapes_.size(); ++s) {
+    const bool is_driven = driven != driven_.end() && *driven == s;
+    if (is_driven) ++driven;
+    const bool has_pairs = start_[s + 1] > start_[s];
+    if (is_driven || has_pairs) near_.push_back(static_cast<std::uint32_t>(s));
+    if (!has_pairs) continue;
+    if (near_rows_.empty() || s > near_rows_.back().last + kMaxGap)
+      near_rows_.push_back({s, s, start_.data(), neighbour_.data(), 0});
+    near_rows_.back().last = s + 1;
+  }
+}
+
 bool SurfaceNeighbours::list() noexcept {
   renew_batches();
   if (!std::exchange(changed_, false)) return false;
@@ -147,11 +169,16 @@ bool SurfaceNeighbours::list() noexcept {
     if (members_.empty() || members_.back() != member) members_.push_back(member);
     ++fill_[surface];
   });
-  start_[0] = 0;
+  left_.clear();
+  std::size_t start_before = 0;
   for (std::size_t s = 0; s < surfaces; ++s) {
+    const std::size_t end_before = start_[s + 1];
+    if (end_before > start_before && fill_[s] == 0) left_.push_back(static_cast<std::uint32_t>(s));
+    start_before = end_before;
     start_[s + 1] = start_[s] + fill_[s];
     fill_[s] = start_[s];
   }
+  list_near();
   visit([&](std::size_t b, std::size_t surface) {
     neighbour_[fill_[surface]++] = static_cast<std::uint32_t>(4 * (surfaces + b));
   });

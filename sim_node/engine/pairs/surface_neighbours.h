@@ -111,6 +111,12 @@ class SurfaceNeighbours {
   NeighbourRows rows() const noexcept {
     return {0, shapes_.size(), start_.data(), neighbour_.data(), 0};
   }
+  /// Those that have pairs, ascending, and some few without between them.
+  const std::vector<NeighbourRows>& near_rows() const noexcept { return near_rows_; }
+  /// Surfaces that have pairs or are driven, ascending.
+  const std::vector<std::uint32_t>& near() const noexcept { return near_; }
+  /// Surfaces that had pairs before the last list() that returned true, and have none since.
+  const std::vector<std::uint32_t>& left() const noexcept { return left_; }
   /// Balls with pairs, as members, ascending.
   const std::vector<std::uint32_t>& members() const noexcept { return members_; }
   std::size_t entry_count() const noexcept { return start_.back(); }
@@ -124,6 +130,7 @@ class SurfaceNeighbours {
     const double left = free_way - way_;
     return left > 0.0 ? left * left : -1.0;
   }
+  void list_near() noexcept;
   double begin_measure(std::size_t ball, const double* place) noexcept;
   void set_listed(std::size_t ball, std::size_t surface, bool is_listed) noexcept {
     std::uint64_t& word = listed_[ball * words_ + surface / kBits];
@@ -171,6 +178,9 @@ class SurfaceNeighbours {
   std::vector<std::size_t> fill_;         // by row
   std::vector<std::uint32_t> neighbour_;  // columns
   std::vector<std::uint32_t> members_;
+  std::vector<NeighbourRows> near_rows_;
+  std::vector<std::uint32_t> near_;
+  std::vector<std::uint32_t> left_;
   bool changed_ = false;                          // since list()
   std::vector<std::uint64_t> surfaces_of_batch_;  // see ListedBatches
   std::vector<std::uint8_t> balls_of_batch_;

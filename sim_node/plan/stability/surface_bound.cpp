@@ -2,9 +2,13 @@
 #include "sim_node/plan/stability/surface_bound.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "node/assert.h"
 
@@ -276,41 +280,103 @@ bool share_a_place(const Body& of_a, const Body& of_b, double reach, int dimensi
   return !is_in_hole(a, b) && !is_in_hole(b, a) && may_overlap(a, b, dimension);
 }
 
+/// What is within the reach of a surface lies between these along the axes [m].
+struct Extent {
+  Vec3 low = Vec3::Constant(-kNoEnd);
+  Vec3 high = Vec3::Constant(kNoEnd);
+
+  bool meets(const Extent& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+Extent extent_of(const Body& body, double reach) {
+  constexpr double kSlack = 1e-9;  // of coordinates: more than they are rounded by
+  Extent extent;
+  if (is_plane(body.surface)) return extent;
+  const Zone zone(body.surface, body.centre, reach);
+  for (int axis = 0; axis < 3; ++axis) {
+    Surface across;
+    across.axis = Vec3::Unit(axis);
+    const Heights heights = heights_over({across, Vec3::Zero()}, zone.body());
+    extent.low[axis] = heights.lowest - zone.margin - kSlack * std::abs(heights.lowest);
+    extent.high[axis] = heights.highest + zone.margin + kSlack * std::abs(heights.highest);
+  }
+  return extent;
+}
+
+/// Which of so many things are in a set, 64 in each word.
+using Bits = std::vector<std::uint64_t>;
+
+/// A graph by the others that each is joined to.
+class JoinedBits {
+ public:
+  static constexpr std::size_t kBits = 64;
+
+  explicit JoinedBits(std::size_t count) : words_((count + kBits - 1) / kBits), rows_(count) {
+    for (Bits& row : rows_) row.resize(words_, 0);
+  }
+  void join(std::size_t a, std::size_t b) {
+    rows_[a][b / kBits] |= std::uint64_t{1} << (b % kBits);
+    rows_[b][a / kBits] |= std::uint64_t{1} << (a % kBits);
+  }
+  std::size_t count() const { return rows_.size(); }
+  std::size_t word_count() const { return words_; }
+  const Bits& row(std::size_t a) const { return rows_[a]; }
+  Bits all() const {
+    Bits bits(words_, 0);
+    for (std::size_t i = 0; i < count(); ++i) bits[i / kBits] |= std::uint64_t{1} << (i % kBits);
+    return bits;
+  }
+  static std::size_t size_of(const Bits& bits) {
+    std::size_t size = 0;
+    for (const std::uint64_t word : bits) size += static_cast<std::size_t>(std::popcount(word));
+    return size;
+  }
+
+ private:
+  std::size_t words_;
+  std::vector<Bits> rows_;
+};
+
 /// The largest group of a graph whose members are all joined to each other.
 class LargestGroup {
  public:
-  explicit LargestGroup(std::vector<std::vector<bool>> joined) : joined_(std::move(joined)) {
-    std::vector<std::size_t> all(joined_.size());
-    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    extend(all, 0);
+  explicit LargestGroup(JoinedBits joined) : joined_(std::move(joined)) {
+    extend(joined_.all(), 0);
   }
   /// Where the search took too long, the most that any one is joined to.
   std::size_t size() const {
     if (work_ < kMaxWork) return largest_;
     std::size_t most = 0;
-    for (const std::vector<bool>& row : joined_) {
-      most = std::max(most, static_cast<std::size_t>(std::count(row.begin(), row.end(), true)) + 1);
-    }
+    for (std::size_t i = 0; i < joined_.count(); ++i)
+      most = std::max(most, JoinedBits::size_of(joined_.row(i)) + 1);
     return most;
   }
 
  private:
-  static constexpr std::size_t kMaxWork = 20'000'000;
+  static constexpr std::size_t kMaxWork = 20'000'000;  // words
 
-  void extend(const std::vector<std::size_t>& candidates, std::size_t size) {
+  /// @param left  candidates, of which each that has been looked at is taken out
+  void extend(Bits left, std::size_t size) {
     largest_ = std::max(largest_, size);
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (size + candidates.size() - i <= largest_ || work_ >= kMaxWork) return;
-      std::vector<std::size_t> left;
-      for (std::size_t j = i + 1; j < candidates.size(); ++j) {
-        if (joined_[candidates[i]][candidates[j]]) left.push_back(candidates[j]);
+    std::size_t count = JoinedBits::size_of(left);
+    for (std::size_t word = 0; word < left.size(); ++word) {
+      while (left[word] != 0) {
+        if (size + count <= largest_ || work_ >= kMaxWork) return;
+        const auto bit = static_cast<std::size_t>(std::countr_zero(left[word]));
+        left[word] &= left[word] - 1;
+        --count;
+        const Bits& row = joined_.row(JoinedBits::kBits * word + bit);
+        Bits both = left;
+        for (std::size_t i = word; i < both.size(); ++i) both[i] &= row[i];
+        work_ += both.size();
+        extend(std::move(both), size + 1);
       }
-      work_ += candidates.size() - i;
-      extend(left, size + 1);
     }
   }
 
-  std::vector<std::vector<bool>> joined_;
+  JoinedBits joined_;
   std::size_t largest_ = 0;
   std::size_t work_ = 0;
 };
@@ -321,13 +387,17 @@ double max_surfaces_in_reach(const std::vector<Surface>& surfaces, const std::ve
                              double reach, int dimension, const std::vector<std::size_t>& group) {
   CORDIS_ASSERT(group.empty() || group.size() == surfaces.size());
   const std::size_t count = surfaces.size();
-  std::vector<std::vector<bool>> joined(count, std::vector<bool>(count, false));
+  std::vector<Extent> extents;
+  for (std::size_t i = 0; i < count; ++i)
+    extents.push_back(extent_of({surfaces[i], centres[i]}, reach));
+  JoinedBits joined(count);
   for (std::size_t a = 0; a < count; ++a) {
     for (std::size_t b = a + 1; b < count; ++b) {
-      const bool together =
-          (!group.empty() && group[a] != group[b]) ||
-          share_a_place({surfaces[a], centres[a]}, {surfaces[b], centres[b]}, reach, dimension);
-      joined[a][b] = joined[b][a] = together;
+      const bool may_meet = !group.empty() && group[a] != group[b];
+      if (!may_meet && !extents[a].meets(extents[b])) continue;
+      if (may_meet ||
+          share_a_place({surfaces[a], centres[a]}, {surfaces[b], centres[b]}, reach, dimension))
+        joined.join(a, b);
     }
   }
   return static_cast<double>(LargestGroup(std::move(joined)).size());
