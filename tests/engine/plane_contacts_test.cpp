@@ -35,13 +35,13 @@ LinkState random_contact(Chance& chance) {
 /// Balls fly among planes, come near them and leave. Members of the set are some of the MATs in any order.
 NetworkDescription random_scene(unsigned seed) {
   Chance chance(seed);
-  const int dimension = 1 + static_cast<int>(seed % 3);
+  const int dimension = 1 + static_cast<int>(seed / 4 % 3);
   const auto balls = static_cast<std::uint32_t>(chance(1.0, 75.0));
   NetworkDescription scene = cloud(balls, 1.2, 3.0, dimension, seed);
   if (dimension > 1) scene.gravity = Vec3(0.0, -9.81, 0.0);
   const IntegratorKind kinds[] = {IntegratorKind::kCordis, IntegratorKind::kLeapfrog,
                                   IntegratorKind::kImplicit};
-  scene.integrator = kinds[seed / 3 % 3];
+  scene.integrator = kinds[seed / 5 % 3];
   const bool is_floor_alone = seed % 4 == 0;
   std::vector<std::uint32_t> planes;
   const int plane_count = is_floor_alone ? 1 : 1 + static_cast<int>(chance(0.0, 12.0));
