@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "sim_node/plan/plan.h"
+#include "sim_node/plan/stability/bend_slope.h"
 #include "sim_node/plan/stability/partner_limit.h"
 #include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/slope.h"
@@ -182,8 +183,14 @@ ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph
   ReachLimit limit;
   limit.speed = graph.reach.speed;
   const bool turns = network.dimension > 1;
+  const SlopesOfBends bends(network, graph.reach);
   for (const Edge& edge : graph.edges) {
     if (edge.bounded) continue;
+    if (edge.liaison.kind == engine::LiaisonKind::kBend) {
+      limit.energy =
+          std::min(limit.energy, bends.energy_followed(network.bends[edge.liaison.index]));
+      continue;
+    }
     const engine::StateLink& link = network.state_links[edge.liaison.index];
     const Reach here = reach_between(graph.reach, network, {edge.mat_a}, {edge.mat_b});
     limit.energy = std::min(

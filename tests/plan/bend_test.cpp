@@ -204,5 +204,118 @@ TEST(BendPlan, SettlesABeamToItsSag) {
   EXPECT_NEAR(-rest.position.back().y() / exact, 1.0, 0.01);
 }
 
+/// A law of a bend that acts alike both ways.
+engine::Law random_law(std::mt19937& random) {
+  const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
+  const Term bend = q(Quantity::kElongation);
+  const double slope = 0.01 * std::pow(100.0, uniform());
+  const double more = slope * 5.0 * uniform();
+  const double width = 0.1 + uniform();
+  switch (random() % 5) {
+    case 0:
+      return expression_law(Term(slope) * bend + Term(more) * bend * bend * bend);
+    case 1:
+      return expression_law(Term(slope) * one(Operation::kSin, bend));
+    case 2:
+      return expression_law(Term(slope * width) * one(Operation::kTanh, bend / Term(width)));
+    case 3:
+      return engine::Table({-width, 0.0, width}, {-slope * width, 0.0, slope * width});
+    default:
+      return engine::Power{slope, 1.0 + 0.5 * static_cast<double>(random() % 5)};
+  }
+}
+
+/// Gives the bends of a network one law beside what they have; viscosities stay.
+NetworkDescription with_a_law(NetworkDescription scene, const engine::Law& law) {
+  for (engine::Bend& bend : scene.bends) {
+    StateMachine machine = Behaving().state(bend.stiffness, bend.viscosity).state_machine;
+    machine.states[0].elasticity = law;
+    bend.state_machine = static_cast<std::uint32_t>(scene.state_machines.size());
+    bend.stiffness = bend.viscosity = 0.0;
+    scene.state_machines.push_back(machine);
+  }
+  return scene;
+}
+
+TEST(BendLawBound, HoldsFromBothSidesForRandomNetworks) {
+  int certain = 0;
+  for (unsigned seed = 0; seed < 60; seed += kSeedStride) {
+    std::mt19937 random(seed + 1000);
+    NetworkDescription scene =
+        with_a_law(random_bends(seed, 1 + static_cast<int>(seed % 3)), random_law(random));
+    const double certified = certified_step(scene);
+    const double limit = plan::StartTangent(scene).diverging_step();
+    EXPECT_LE(certified, limit * (1.0 + 1e-6)) << seed;
+    scene.step = 0.98 * certified;
+    const plan::LiaisonGraph graph = liaison_graph(scene);
+    scene.step = 0.98 * plan::certain_step_of(scene, graph, plan::stability_of(scene, graph));
+    if (!(scene.step > 0.0)) continue;
+    ++certain;
+    EXPECT_LT(largest_excursion(scene, 20'000), 30.0) << seed;
+  }
+  EXPECT_GT(certain, kSeedStride > 1 ? 0 : 30);
+}
+
+/// Three masses that are nearly straight, and fast: the middle one goes across.
+NetworkDescription struck(const engine::Law& law, double speed, int dimension = 2) {
+  NetworkDescription scene;
+  scene.dimension = dimension;
+  scene.step = 1e-5;
+  const Vec3 across = dimension == 1 ? Vec3::UnitX() : Vec3(0.0, 0.8, dimension == 3 ? 0.6 : 0.0);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 place = dimension == 1 ? Vec3(Vec3::Zero()) : Vec3(0.1 * i, 1e-4 * i * i, 0.0);
+    scene.mats.push_back(mass(i == 1 ? 0.02 : 0.01, place, (i == 1 ? speed : -speed) * across));
+  }
+  if (dimension > 1) scene.links = {{0, 1, 20.0, 0.0, 0.1}, {1, 2, 20.0, 0.0, 0.1}};
+  scene.bends = {{0, 1, 2, 0.0, 0.0, 0.0, 0.1, 0.1}};
+  return with_a_law(scene, law);
+}
+
+TEST(BendLawBound, CountsWhatEnergyReaches) {
+  // The slope is 0.01 N m/rad at the start, and beyond 0.5 rad 100 times that.
+  const engine::Law stop = engine::Table({-1.5, -0.5, 0.5, 1.5}, {-1.005, -0.005, 0.005, 1.005});
+  const engine::Law soft = engine::Table({-1.5, 1.5}, {-0.015, 0.015});
+  EXPECT_LT(certified_step(struck(stop, 1.0)), 0.5 * certified_step(struck(soft, 1.0)));
+  // A cubic law is followed as far as the energy carries it.
+  const Term bend = q(Quantity::kElongation);
+  const engine::Law cubic = expression_law(Term(0.01) * bend + Term(3.0) * bend * bend * bend);
+  const double slow = certified_step(struck(cubic, 1e-3));
+  const double fast = certified_step(struck(cubic, 5.0));
+  EXPECT_LT(fast, 0.8 * slow);
+  NetworkDescription scene = struck(cubic, 5.0);
+  scene.step = 0.98 * fast;
+  EXPECT_LT(largest_excursion(scene, 20'000), 1e4);
+}
+
+TEST(BendLawBound, IsNotCertainOfWhatHasNoSlope) {
+  const Term bend = q(Quantity::kElongation);
+  const engine::Law jumps = expression_law(Term(0.1) * one(Operation::kSign, bend));
+  EXPECT_TRUE(liaison_graph(struck(jumps, 1.0)).uncertainty);
+  const engine::Law drives = expression_law(Term(-0.1) * bend * bend * bend);
+  EXPECT_TRUE(liaison_graph(struck(drives, 1.0)).uncertainty);
+}
+
+TEST(BendLawReference, IsWhatTheSchemeConvergesTo) {
+  const Term bend = q(Quantity::kElongation);
+  const Term rate = q(Quantity::kSpeed);
+  for (int dimension = 1; dimension <= 3; ++dimension) {
+    NetworkDescription scene = struck(
+        expression_law(Term(0.05) * bend + Term(0.3) * bend * bend * bend + Term(1e-5) * rate), 0.5,
+        dimension);
+    plan::ReferenceIntegrator exact(scene);
+    exact.advance_to(0.1);
+    double errors[2] = {};
+    for (const int part : {1, 2}) {
+      scene.step = 1e-5 / part;
+      World world = make_world(scene);
+      run(world, part * 10'000);
+      for (std::uint32_t i = 0; i < scene.mats.size(); ++i)
+        errors[part - 1] += (world.position(i) - exact.position(i)).norm();
+    }
+    EXPECT_LT(errors[0], 1e-3) << dimension;
+    EXPECT_NEAR(errors[0] / errors[1], 2.0, 0.3) << dimension;
+  }
+}
+
 }  // namespace
 }  // namespace cordis::test

@@ -90,6 +90,7 @@ std::vector<Drawn> drawn_of_fields() {
 
 std::vector<Drawn> drawn_of_conditions() {
   return {
+      {"a law of a bend", {"kind: bending", ", elasticity: "}, {"bend_rad", "at_rad", "power"}},
       {"the angle of a bend", {"when: "}, {"of_bends[0].angle_rad", "of_bends[0].bend_rad"}},
       {"the moment of a bend", {"when: ", "of_bends[0].moment_n_m"}},
       {"the speed of a bend", {"when: ", "of_bends[0].speed_rad_per_s"}},

@@ -31,6 +31,7 @@ class SceneWriter {
         random_of_variables_(seed ^ 0x2545f491U),
         random_of_media_(seed ^ 0x1b873593U),
         random_of_bends_(seed ^ 0x9e3779b9U),
+        random_of_laws_of_bends_(seed ^ 0x4cf5ad43U),
         random_of_polylines_(seed ^ 0x85ebca6bU),
         random_of_lively_laws_(seed ^ 0x7feb352dU),
         random_of_crowds_(seed ^ 0xd6e8feb8U),
@@ -768,6 +769,7 @@ step: {{rate_hz: {}, integrator: {}{}}}
       law += fmt::format(", viscosity_n_m_s_per_rad: {:.4g}", viscosity);
     const double rest = bend_between(-3.0, 3.0);
     if (space_ < 3 && bend_between(0.0, 1.0) < 0.5) law += fmt::format(", rest_rad: {:.4g}", rest);
+    law += law_of_bend(stiffness);
     if (matter_ == Matter::kAnything && bend_between(0.0, 1.0) < 0.6) {
       law = bend_with_states(stiffness);
       if (space_ == 1 || bend_between(0.0, 1.0) < 0.3)
@@ -801,12 +803,59 @@ step: {{rate_hz: {}, integrator: {}{}}}
     return fmt::format(
         "{{kind: bending, states: {{"
         "whole: {{stiffness_n_m_per_rad: {:.4g}{}{}, exits: [{{to: bent, when: \"{}\"{}}}]}}, "
-        "bent: {{stiffness_n_m_per_rad: {:.4g}, exits: ["
+        "bent: {{stiffness_n_m_per_rad: {:.4g}{}, exits: ["
         "{{to: cut, when: abs(angle_rad) > {:.4g} or moment_n_m > {:.4g}}}, "
         "{{to: whole, when: \"age_s > {:.4g} and falling(speed_rad_per_s)\"}}]}}, "
         "cut: {{final: true}}}}",
-        stiffness, viscosity, own_rest, asked, fold, softer, yield + bend_between(0.05, 2.0),
-        softer, bend_between(0.001, 0.1));
+        stiffness, viscosity, own_rest, asked, fold, softer, law_of_bend(softer),
+        yield + bend_between(0.05, 2.0), softer, bend_between(0.001, 0.1));
+  }
+
+  double law_of_bend_between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_of_laws_of_bends_()) / 4294967296.0;
+  }
+
+  /// Laws beside the stiffness of a bend, in half of the cases: they act alike both ways.
+  std::string law_of_bend(double stiffness) {
+    if (matter_ != Matter::kAnything || law_of_bend_between(0.0, 1.0) < 0.5) return "";
+    const double slope = stiffness * law_of_bend_between(0.1, 2.0);
+    const double more = stiffness * law_of_bend_between(0.1, 5.0);
+    const double width = law_of_bend_between(0.1, 2.0);
+    const double drag = stiffness * std::pow(10.0, law_of_bend_between(-5.0, -2.0));
+    std::string law;
+    switch (static_cast<int>(law_of_bend_between(0.0, 7.0))) {
+      case 0:
+        law = fmt::format("\"{:.4g} * bend_rad + {:.4g} * bend_rad^3\"", slope, more);
+        break;
+      case 1:
+        law = fmt::format("{:.4g} * sin(bend_rad)", slope);
+        break;
+      case 2:
+        law = fmt::format("{:.4g} * tanh(bend_rad / {:.4g})", slope * width, width);
+        break;
+      case 3:
+        law = fmt::format(
+            "{{kind: table, at_rad: [{:.4g}, 0, {:.4g}], moment_n_m: [{:.4g}, 0, {:.4g}]}}", -width,
+            width, -slope * width, slope * width);
+        break;
+      case 4:
+        law = fmt::format("{{kind: power, coefficient: {:.4g}, exponent: {}}}", slope,
+                          1.0 + 0.5 * std::floor(law_of_bend_between(0.0, 5.0)));
+        break;
+      case 5:
+        law = fmt::format("{:.4g} * bend_rad + {:.4g} * speed_rad_per_s * abs(bend_rad)", slope,
+                          drag);
+        break;
+      default:
+        law = fmt::format("\"{:.4g} * (1 + 0.5 * sin({:.4g} * time_s)) * bend_rad\"", slope,
+                          law_of_bend_between(1.0, 50.0));
+        break;
+    }
+    law = ", elasticity: " + law;
+    if (law_of_bend_between(0.0, 1.0) < 0.3)
+      law += fmt::format(", dissipation: {{kind: power, coefficient: {:.4g}, exponent: {}}}", drag,
+                         law_of_bend_between(0.0, 1.0) < 0.5 ? 1 : 2);
+    return law;
   }
 
   double lively_between(double low, double high) {
@@ -1476,7 +1525,8 @@ step: {{rate_hz: {}, integrator: {}{}}}
   std::mt19937 random_of_variables_;  // likewise
   std::mt19937 random_of_media_;      // likewise
   std::mt19937 random_of_bends_;      // likewise
-  std::mt19937 random_of_polylines_;  // likewise
+  std::mt19937 random_of_laws_of_bends_;
+  std::mt19937 random_of_polylines_;     // likewise
   std::mt19937 random_of_lively_laws_;   // likewise
   std::mt19937 random_of_crowds_;        // likewise
   std::mt19937 random_of_fields_;        // likewise

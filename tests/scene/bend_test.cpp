@@ -181,10 +181,71 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
             "each state of liaison 'b' has its own 'stiffness_n_m_per_rad'",
             "write it in the states"},
         BadScene{kHead2,
-                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, elasticity: ^{}}}
+                 R"(liaisons: {b: {kind: bending, elasticity: "2 * ^angle_rad"}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-                 "a bending liaison has no elasticity: its law is linear in each state", ""},
+                 "elasticity of liaison 'b' cannot ask for 'angle_rad'",
+                 "it may ask for bend_rad, the angle beyond the rest angle, and speed_rad_per_s"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, states: {on: {elasticity: "2 * ^elongation_m", final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "elasticity of state 'on' of liaison 'b' cannot ask for 'elongation_m'",
+            "it may ask for bend_rad, the angle beyond the rest angle, and speed_rad_per_s"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, elasticity: ^max(bend_rad, 0)}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "'elasticity' in liaison 'b' must act alike both ways in 2 dimensions, got 1 N m "
+            "at 1 rad and 0 N m the other way",
+            "write it with abs(bend_rad) and sign(bend_rad); a table has its points below 0 too"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, dissipation: ^speed_rad_per_s^2}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "'dissipation' in liaison 'b' must act alike both ways in 2 dimensions, got 1 N m "
+            "at 1 rad/s and 1 N m the other way",
+            "write it with abs(speed_rad_per_s) and sign(speed_rad_per_s)"},
+        BadScene{
+            kHead3,
+            R"(liaisons: {b: {kind: bending, elasticity: ^bend_rad + 0.5}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}}
+)",
+            "'elasticity' in liaison 'b' must be 0 where the bend is 0, got a moment of 0.5 N m",
+            "in 3 dimensions a straight bend has no direction"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, elasticity: {kind: table, at_rad: [-1, 0, 1], ^force_n: [-1, 0, 1]}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "", ""},
+        BadScene{kHead2,
+                 R"(liaisons: {b: {kind: bending, elasticity: {kind: ^rings, rings: []}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "", ""},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: ^time_s, elasticity: 2 * bend_rad}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "'stiffness_n_m_per_rad' in liaison 'b' changes, and stands beside 'elasticity'",
+            "write it there: its formula times sin(bend_rad)"},
+        BadScene{kHead2,
+                 R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, force_limit_n: ^2}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "a bending liaison has no 'force_limit_n'",
+                 "limit its moment in an elasticity: max(-0.5, min(0.5, 2 * bend_rad))"},
+        BadScene{
+            kHead2,
+            R"(liaisons: {b: {kind: bending, elasticity: ^2 * bend_rad, states: {on: {final: true}}}}
+matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+            "each state of liaison 'b' has its own 'elasticity'", "write it in the states"},
         BadScene{
             kHead2,
             R"(liaisons: {b: {kind: bending, states: {whole: {exits: [{to: whole, when: ^elongation_m > 1}]}}}}
@@ -443,6 +504,64 @@ TEST(BendsWithStates, TakeParametersDuringARun) {
   ASSERT_EQ(parameters.get("reed.stiffness_n_m_per_rad").entries.size(), 1u);
   EXPECT_EQ(parameters.set("twig", "stiffness_n_m_per_rad", 1.0).problem,
             "'twig' has no parameter 'stiffness_n_m_per_rad'");
+}
+
+TEST(BendsWithLaws, AreReadWithTheirKeys) {
+  const Scene scene = sound_scene(2, R"(liaisons:
+  cubic: {kind: bending, parameters: {b: 2}, elasticity: b * bend_rad + bend_rad^3, dissipation: 0.1 * speed_rad_per_s}
+  pumped: {kind: bending, elasticity: (1 + time_s) * bend_rad}
+  tin:
+    kind: bending
+    states:
+      whole: {stiffness_n_m_per_rad: 1, elasticity: {kind: table, at_rad: [-1, 0, 1], moment_n_m: [-3, 0, 3]},
+              exits: [{to: limp, when: abs(bend_rad) > 1}]}
+      limp: {dissipation: {kind: table, at_rad_per_s: [-1, 1], moment_n_m: [-3, 3]}, final: true}
+matter:
+  rod: {kind: string, count: 3, mass_kg: 0.1, from_m: [0, 0], to_m: [0.4, 0], stiffness_n_per_m: 100}
+links:
+  - {liaison: cubic, along: rod, b: 5, name: cubic_rod}
+  - {liaison: pumped, along: rod}
+  - {liaison: tin, along: rod}
+)");
+  const auto& bends = scene.network.bends;
+  const auto state = [&](std::size_t bend, std::size_t index) -> const engine::LinkState& {
+    return scene.network.state_machines[bends[bend].state_machine].states[index];
+  };
+  ASSERT_EQ(bends.size(), 3u);
+  EXPECT_EQ(bends[0].stiffness, 0.0);
+  EXPECT_EQ(elastic_tension(state(0, 0).elasticity, {0.5, 0.5}), 5.0 * 0.5 + 0.125);
+  engine::LawPoint moving;
+  moving.speed = 3.0;
+  EXPECT_EQ(viscous_tension(state(0, 0).dissipation, moving), 0.1 * 3.0);
+  // A factor of time is no stiffness here, which would be of the sine.
+  EXPECT_NE(laws_of_bend(state(1, 0)).elasticity, nullptr);
+  EXPECT_EQ(state(2, 0).stiffness, 1.0);
+  EXPECT_EQ(elastic_tension(state(2, 0).elasticity, {0.5, 0.5}), 1.5);
+  EXPECT_EQ(viscous_tension(state(2, 1).dissipation, moving), 3.0);
+}
+
+TEST(BendsWithLaws, TakeParametersDuringARun) {
+  const auto scene = std::make_shared<const Scene>(sound_scene(2, R"(liaisons:
+  cubic: {kind: bending, parameters: {b: 2}, elasticity: b * bend_rad, viscosity_n_m_s_per_rad: 0.1}
+matter:
+  rod: {kind: string, count: 3, mass_kg: 0.1, from_m: [0, 0], to_m: [0.4, 0], stiffness_n_per_m: 100}
+links:
+  - {liaison: cubic, along: rod, name: limb}
+)"));
+  Parameters parameters(scene);
+  engine::World world(std::make_shared<const engine::Network>(scene->network));
+  for (const auto& [name, value] :
+       {std::pair{"b", 7.0}, std::pair{"viscosity_n_m_s_per_rad", 0.2}}) {
+    const Parameters::Outcome outcome = parameters.set("limb", name, value);
+    ASSERT_EQ(outcome.problem, "");
+    ASSERT_EQ(outcome.changes.size(), 1u);
+    world.replace_state_machine(outcome.changes[0].index, outcome.changes[0].state_machine);
+  }
+  const engine::NetworkDescription& network = scene->network;
+  const std::uint32_t index = network.bends[0].state_machine;
+  engine::StateMachine without_law = network.state_machines[index];
+  without_law.states[0].elasticity = engine::NoLaw{};
+  EXPECT_THROW(world.replace_state_machine(index, without_law), std::invalid_argument);
 }
 
 TEST(Bends, NameThemselvesInARefusal) {

@@ -140,7 +140,7 @@ void check_bend_states(const NetworkDescription& description, const Bend& bend,
           "those of its states");
   const StateMachine& state_machine = description.state_machines[bend.state_machine];
   require(refused_in_bends(state_machine) == nullptr, name + ": its states",
-          "linear, with conditions on an angle");
+          "of a bend: laws of an angle without limits, conditions on an angle");
   const Bend stiffest = description.stiffest_of(bend);
   for (const double length : {bend.length_ab, bend.length_bc}) {
     require(std::isfinite(stiffest.stiffness / length / length) &&

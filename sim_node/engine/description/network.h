@@ -102,6 +102,9 @@ struct MaxwellLink {
 /// w = v / length_bc - u / length_ab - rest. In 3 dimensions a bend has no sign, and its rest is straight.
 ///
 /// A bend with states takes B and Z from the state it is in; its conditions ask for the quantities of an angle.
+/// A state may have laws beside B and Z. With s the length of w and angle(s) as BendOfLaw has it, the elasticity M adds
+/// the moment M(angle) angle'(s) along w, of the energy whose slope over the angle is M. For sides of their rest lengths
+/// the torque is M(bend). In 2 and 3 dimensions a law is that of a bend of at least 0, and acts alike the other way.
 struct Bend {
   std::uint32_t mat_a = 0;
   std::uint32_t mat_b = 0;

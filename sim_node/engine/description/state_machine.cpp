@@ -112,14 +112,19 @@ const Program* formula_of(const LinkState& state, Parameter parameter) noexcept 
 
 namespace {
 
+/// What limits the force of a state; nullptr: nothing does.
+const char* limits_of(const LinkState& state) noexcept {
+  if (!state.pulls || !state.pushes) return "pulls and pushes";
+  return std::isinf(state.force_limit) ? nullptr : "a force limit";
+}
+
 /// What keeps a state from having a stiffness and a viscosity alone; nullptr: nothing does.
 const char* beyond_linear(const LinkState& state) noexcept {
   if (!is_none(state.elasticity) && !is_product(state.elasticity, Quantity::kElongation))
     return "elasticity";
   if (!is_none(state.dissipation) && !is_product(state.dissipation, Quantity::kSpeed))
     return "dissipation";
-  if (!state.pulls || !state.pushes) return "pulls and pushes";
-  return std::isinf(state.force_limit) ? nullptr : "a force limit";
+  return limits_of(state);
 }
 
 }  // namespace
@@ -130,10 +135,32 @@ bool fits_maxwell_element(const StateMachine& state_machine) noexcept {
          state_machine.states[0].formulas.empty();
 }
 
+LawsOfBend laws_of_bend(const LinkState& state) noexcept {
+  LawsOfBend laws;
+  if (!is_none(state.elasticity) && !is_product(state.elasticity, Quantity::kElongation))
+    laws.elasticity = &state.elasticity;
+  if (!is_none(state.dissipation) && !is_product(state.dissipation, Quantity::kSpeed))
+    laws.dissipation = &state.dissipation;
+  return laws;
+}
+
+bool has_laws_of_bends(const StateMachine& state_machine) noexcept {
+  return std::ranges::any_of(state_machine.states,
+                             [](const LinkState& state) { return laws_of_bend(state).any(); });
+}
+
 const char* refused_in_bends(const StateMachine& state_machine) noexcept {
   if (rubs(state_machine)) return "friction";
   for (const LinkState& state : state_machine.states) {
-    if (const char* const refused = beyond_linear(state)) return refused;
+    for (const Law* law : {&state.elasticity, &state.dissipation}) {
+      if (argument_of(*law) == LawArgument::kDistance) return "a law of the distance";
+      const auto* expression = std::get_if<Expression>(law);
+      if (expression == nullptr) continue;
+      for (const Quantity quantity : {Quantity::kDistance, Quantity::kMassA, Quantity::kMassB}) {
+        if (asks_for(expression->program, quantity)) return "quantities of a link in a law";
+      }
+    }
+    if (const char* const refused = limits_of(state)) return refused;
   }
   const auto asks_for_link = [](const Program& program) {
     return std::ranges::any_of(program.code, [](const Instruction& instruction) {

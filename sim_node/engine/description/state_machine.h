@@ -109,6 +109,21 @@ struct StateMachine {
 /// The friction in a state. Precondition: the state exists.
 const Friction& friction_in(const StateMachine& state_machine, std::size_t state) noexcept;
 
+/// The laws of a bend in a state beside its stiffness and its viscosity; null: there is none. A factor of variables
+/// times the elongation, or the speed, counts as a stiffness or a viscosity. The elongation of a law is the bend, the
+/// speed its rate: see BendOfLaw.
+struct LawsOfBend {
+  const Law* elasticity = nullptr;
+  const Law* dissipation = nullptr;
+
+  bool any() const noexcept { return elasticity != nullptr || dissipation != nullptr; }
+};
+
+/// Laws of the state itself, which must outlive them.
+LawsOfBend laws_of_bend(const LinkState& state) noexcept;
+/// True if one of its states has such a law.
+bool has_laws_of_bends(const StateMachine& state_machine) noexcept;
+
 /// What a bend cannot have in a state: `elasticity` and so on; nullptr when it takes all of it.
 const char* refused_in_bends(const StateMachine& state_machine) noexcept;
 /// True if a Maxwell element takes K and Z from it: one state, with these two alone.

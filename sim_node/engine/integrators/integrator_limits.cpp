@@ -41,7 +41,11 @@ std::optional<IntegratorRefusal> refusal_of_what_does_not_conserve(
   }
   if (!network.maxwell_links.empty()) return refusal(LiaisonKind::kMaxwellLink, 0, "viscosity");
   for (std::size_t l = 0; l < network.bends.size(); ++l) {
-    if (network.bends[l].has_states()) return refusal(LiaisonKind::kBend, l, "states");
+    if (network.bends[l].has_states()) {
+      const bool is_one = network.state_machines[network.bends[l].state_machine].is_stateless();
+      return refusal(LiaisonKind::kBend, l,
+                     is_one ? "a law or a parameter of a bend that is no number" : "states");
+    }
     if (network.bends[l].viscosity > 0.0) return refusal(LiaisonKind::kBend, l, "viscosity");
   }
   for (std::size_t s = 0; s < network.sets.size(); ++s) {

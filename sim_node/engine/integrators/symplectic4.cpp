@@ -92,7 +92,7 @@ void Symplectic4::add_forces(WorldState& world) noexcept {
   world.links.add_forces_at_full_step(world.kernel, at_rest, *world.team);
   world.vector_springs.add_forces_at_full_step(world.kernel, at_rest, *world.team);
   world.state_links.add_forces_before_start(world.state_machines, world.table, at_rest);
-  world.bends.add_forces(at_rest, *world.team);
+  world.bends.add_forces(world.table, at_rest, *world.team);
   PairStep pairs = world.pair_step(true);
   pairs.sums_contacts = true;  // those of the last stage stay
   world.sets.add_forces(pairs, at_rest, world.team.get());

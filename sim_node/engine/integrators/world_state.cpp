@@ -134,7 +134,7 @@ void WorldState::add_frozen_forces(const ForceColumns& columns) noexcept {
   vector_springs.add_forces(kernel, columns, *team);
   state_links.add_forces_before_start(state_machines, table, columns);
   maxwell_links.add_held_forces(state_machines, columns);
-  bends.add_forces(columns, *team);
+  bends.add_forces(table, columns, *team);
   sets.add_forces(pair_step(true), columns, team.get());
 }
 
@@ -154,13 +154,14 @@ void WorldState::start_one_period_ago() noexcept {
 
 double WorldState::stored_energy() noexcept {
   return links.stored_energy(mats) + state_links.stored_energy(table, mats) +
-         maxwell_links.stored_energy() + bends.potential_energy(mats) + sets.stored_energy(table);
+         maxwell_links.stored_energy() + bends.potential_energy(table, mats) +
+         sets.stored_energy(table);
 }
 
 double WorldState::potential_energy() noexcept {
   return links.potential_energy(mats) + vector_springs.potential_energy(mats) +
          state_links.stored_energy(table, mats) + maxwell_links.stored_energy() +
-         bends.potential_energy(mats) + sets.stored_energy(table);
+         bends.potential_energy(table, mats) + sets.stored_energy(table);
 }
 
 StepEnergy WorldState::work_since_last_call() const noexcept {
@@ -290,7 +291,12 @@ void WorldState::replace_state_machine(std::uint32_t index, const StateMachine& 
   const auto is_of_it = [index](const Bend& bend) { return bend.state_machine == index; };
   if (std::ranges::any_of(description().bends, is_of_it) &&
       refused_in_bends(state_machine) != nullptr) {
-    throw std::invalid_argument("a bend has a stiffness and a viscosity in each state, no more");
+    throw std::invalid_argument(
+        "a bend has laws of an angle without limits in each state, no more");
+  }
+  if (std::ranges::any_of(description().bends, is_of_it) &&
+      has_laws_of_bends(state_machine) != has_laws_of_bends(table.state_machines()[index])) {
+    throw std::invalid_argument("the laws of a bend neither come nor go");
   }
   const auto takes_from_it = [index](const MaxwellLink& link) {
     return link.state_machine == index;

@@ -13,12 +13,14 @@ struct LawField {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   bool lowest_excluded = false;
-  bool is_optional = false;       ///< 0 when it is not written
-  double multiple_of = 0.0;       ///< 0: any number of the range
-  const char* hint = "";          ///< for who needs another number
-  bool ascends = false;           ///< a list; strictly
-  bool as_many_as_first = false;  ///< a list as long as the first of the law
-  bool follows = false;           ///< a number that may follow variables of the network
+  bool is_optional = false;         ///< 0 when it is not written
+  double multiple_of = 0.0;         ///< 0: any number of the range
+  const char* hint = "";            ///< for who needs another number
+  const char* bend_key = nullptr;   ///< in a law of a bend, where that is another
+  const char* bend_hint = nullptr;  ///< likewise
+  bool ascends = false;             ///< a list; strictly
+  bool as_many_as_first = false;    ///< a list as long as the first of the law
+  bool follows = false;             ///< a number that may follow variables of the network
 };
 
 }  // namespace cordis::engine

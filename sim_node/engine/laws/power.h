@@ -30,7 +30,9 @@ struct Power {
                    .highest = kMaxExponent,
                    .multiple_of = 0.5,
                    .hint = "an expression has any power, as \"3 * sign(elongation_m) * "
-                           "abs(elongation_m)^1.3\"; a dissipation asks for speed_m_per_s"},
+                           "abs(elongation_m)^1.3\"; a dissipation asks for speed_m_per_s",
+                   .bend_hint = "an expression has any power, as \"3 * sign(bend_rad) * "
+                                "abs(bend_rad)^1.3\"; a dissipation asks for speed_rad_per_s"},
           law.exponent);
   }
 

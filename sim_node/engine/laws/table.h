@@ -28,7 +28,8 @@ class Table {
   template <class Self, class Visit>
   static void visit_fields(Self& law, Visit&& visit) {
     visit(LawField{.key = nullptr, .ascends = true}, law.argument_);
-    visit(LawField{.key = "force_n", .as_many_as_first = true}, law.value_);
+    visit(LawField{.key = "force_n", .bend_key = "moment_n_m", .as_many_as_first = true},
+          law.value_);
   }
   /// Follows a visit_fields() that has written them.
   void find_slopes();

@@ -6,6 +6,7 @@
 #include "sim_node/engine/core/aligned_vector.h"
 #include "sim_node/engine/core/archive.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/engine/links/bend_moment.h"
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/engine/links/bend_states.h"
 #include "sim_node/engine/links/event_log.h"
@@ -27,7 +28,8 @@ class BendArray {
   /// SpringDamperArray::add_forces, shared likewise.
   /// @return works [J] as SpringDamperArray::add_forces counts them in 3 dimensions
   /// Real time: O(bends), no allocation.
-  StepEnergy add_forces(const ForceColumns& columns, ThreadTeam& team) noexcept;
+  StepEnergy add_forces(const StateTable& table, const ForceColumns& columns,
+                        ThreadTeam& team) noexcept;
   /// Changes the states of a step first, and enters that in the log.
   StepEnergy add_forces(const StateKernel& kernel, const StateTable& table,
                         const ForceColumns& columns, std::uint64_t step, EventLog& log,
@@ -38,7 +40,7 @@ class BendArray {
   /// O(bends), no allocation.
   void add_viscous_forces(AlignedVector<double>& force) const noexcept;
   /// Energy where the forces of the last call were computed [J]. Real time: O(bends), no allocation.
-  double potential_energy(const MatArray& mats) const noexcept;
+  double potential_energy(const StateTable& table, const MatArray& mats) const noexcept;
   /// Forgets the viscous forces of the last call: those before step 0 take no work.
   void forget_viscous_forces() noexcept;
 
@@ -79,6 +81,7 @@ class BendArray {
     double stiffness;          // [N m/rad]
     double viscosity_over_dt;  // [N m/rad]
     BendShape shape;
+    bool has_law = false;  // beside these, in its state
   };
   static constexpr std::uint32_t kNoChange = 0xffffffffU;
   /// The linear law of a bend.
@@ -102,7 +105,20 @@ class BendArray {
   /// Enters a change in the log. @return energy that it brought into the bend [J]
   double enter(const StateTable& table, const Change& change, const ForceColumns& columns,
                EventLog& log) noexcept;
-  StepEnergy add_bend(std::size_t bend, const ForceColumns& columns) noexcept;
+  StepEnergy add_bend(const StateTable& table, std::size_t bend,
+                      const ForceColumns& columns) noexcept;
+  /// What laws bring to a bend: moments along the bend vector, and their elastic work in the last period [J].
+  struct PartOfLaws {
+    Vec3 elastic;
+    Vec3 viscous;
+    double work;
+  };
+  /// @param moved_then  how far the bend vector has moved in the shape of the last call
+  PartOfLaws add_laws(const StateTable& table, const Row& row, const Vec3& bend, const Vec3& moved,
+                      const Vec3& moved_then) noexcept;
+  /// Energy of the law of a state, less a part of the elastic work in the last period [J].
+  double energy_of_law(const LawsOfBend& laws, const Row& row, const BendShape& shape, double part,
+                       const ForceColumns& columns, const double* variables) const noexcept;
   const Change* change_of(const Row& row) const noexcept;
   /// The law of the last call where it is not that of this one, else null.
   const LinearLaw* last_law_of(const Row& row) const noexcept;
@@ -118,6 +134,7 @@ class BendArray {
   static void add_moment(const Row& row, const Vec3& moment, double* force) noexcept;
   Vec3 viscous_moment(const Row& row, const Vec3& bend, const Vec3& moved) const noexcept;
   Vec3 last_viscous_moment(std::size_t row) const noexcept;
+  Vec3 last_law_moment(const Row& row) const noexcept;
 
   int dimension_;
   double dt_;  // [s]
@@ -133,6 +150,8 @@ class BendArray {
   GroupedOrder order_;                    // of the bends
   std::vector<StepEnergy> works_;         // of each group in this step
   AlignedVector<double> viscous_moment_;  // of the last call, 3 per row [N m]
+  AlignedVector<double>
+      law_moment_;  // of elastic laws, 3 per row of states_; empty: there are none
 };
 
 }  // namespace cordis::engine

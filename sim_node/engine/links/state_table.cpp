@@ -373,6 +373,14 @@ std::span<double> StateTable::variables() noexcept {
   return content_->variables;
 }
 
+std::span<const double> StateTable::variables() const noexcept {
+  return content_->variables;
+}
+
+std::span<const double> StateTable::variables_before() const noexcept {
+  return content_->variables_before;
+}
+
 void StateTable::keep_variables() noexcept {
   std::ranges::copy(content_->variables, content_->variables_before.begin());
   for (Content::Following& each : content_->following) {

@@ -35,6 +35,9 @@ class StateTable {
   const StateTerm* terms() const noexcept;
   /// The values of the variables that conditions and laws see, one for all links; 0 at first.
   std::span<double> variables() noexcept;
+  std::span<const double> variables() const noexcept;
+  /// What they were as they were kept.
+  std::span<const double> variables_before() const noexcept;
   /// Keeps these values as those of before, for parameter_energy(), and the parameters that follow them.
   void keep_variables() noexcept;
   /// Finds the parameters that follow variables, once these have changed. Real time: O(such parameters), no

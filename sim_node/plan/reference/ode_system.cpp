@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim_node/engine/links/bend_moment.h"
 #include "sim_node/engine/links/bend_shape.h"
 
 namespace cordis::plan {
@@ -228,9 +229,9 @@ void OdeSystem::rate(const Values& values, Values& rate) {
   for (std::uint32_t b = 0; b < network_.bends.size(); ++b) {
     const engine::Bend bend = present_bend(b);
     const engine::BendShape shape(bend, network_.dimension);
-    const Vec3 moment = engine::moment_of(bend, network_.dimension, sides(values, bend));
-    add_pair_force(bend.mat_a, bend.mat_b, shape.force_on_a(moment));
-    add_pair_force(bend.mat_c, bend.mat_b, shape.force_on_c(moment));
+    const Vec3 turning = moment(b, bend, sides(values, bend));
+    add_pair_force(bend.mat_a, bend.mat_b, shape.force_on_a(turning));
+    add_pair_force(bend.mat_c, bend.mat_b, shape.force_on_c(turning));
   }
   for (const engine::Drive& drive : network_.drives) {
     Vec3::Map(rate.data() + n + 3 * static_cast<std::size_t>(drive.mat)) += force_at(
@@ -285,6 +286,26 @@ engine::BendSides OdeSystem::sides(const Values& values, const engine::Bend& ben
           velocity(values, bend.mat_c) - velocity(values, bend.mat_b)};
 }
 
+engine::Vec3 OdeSystem::moment(std::uint32_t index, const engine::Bend& bend,
+                               const engine::BendSides& sides) const {
+  const int dimension = network_.dimension;
+  const Vec3 linear = engine::moment_of(bend, dimension, sides);
+  if (!bend.has_states()) return linear;
+  const engine::LawsOfBend laws =
+      engine::laws_of_bend(network_.state_machines[bend.state_machine].states[bends_[index].state]);
+  if (!laws.any()) return linear;
+  const engine::BendShape shape(bend, dimension);
+  const auto bend_vector = [&](const Vec3& u, const Vec3& v) {
+    return shape(Vec3::Zero(), u, u + v);
+  };
+  const Vec3 rate =
+      bend_vector(sides.rate_u, sides.rate_v) - bend_vector(Vec3::Zero(), Vec3::Zero());
+  const engine::BendOfLaw seen =
+      engine::bend_of_law(bend_vector(sides.u, sides.v), rate, dimension);
+  const engine::MomentOfLaws of_laws = moment_of_laws(laws, seen, nullptr);
+  return linear + (of_laws.elastic + of_laws.viscous) * seen.direction;
+}
+
 engine::LinkQuantities OdeSystem::quantities(std::uint32_t index, double time,
                                              const Values& values) const {
   const engine::Bend bend = present_bend(index);
@@ -299,8 +320,7 @@ engine::LinkQuantities OdeSystem::quantities(std::uint32_t index, double time,
   put(engine::Quantity::kBend, engine::angle_beyond(bend.rest_angle, angle.angle, dimension));
   put(engine::Quantity::kAngularSpeed, angle.rate);
   put(engine::Quantity::kMoment,
-      engine::moment_about_middle(bend, dimension, found,
-                                  engine::moment_of(bend, dimension, found)));
+      engine::moment_about_middle(bend, dimension, found, moment(index, bend, found)));
   put(engine::Quantity::kRestAngle, bend.rest_angle);
   put(engine::Quantity::kAge, time - std::max(bends_[index].entered, 0.0));
   return now;

@@ -89,6 +89,9 @@ class OdeSystem {
   Joined joined(std::uint32_t set, NearPairs::Pair pair, const Present& present) const;
   engine::Bend present_bend(std::uint32_t bend) const;
   engine::BendSides sides(const Values& values, const engine::Bend& bend) const;
+  /// The moment along the bend vector, with that of its laws [N m].
+  engine::Vec3 moment(std::uint32_t index, const engine::Bend& bend,
+                      const engine::BendSides& sides) const;
   engine::LinkQuantities quantities(std::uint32_t bend, double time, const Values& values) const;
   std::int64_t exit_of_bend(std::uint32_t bend, double time, const Values& values);
   void change_bend(std::uint32_t bend, double time, const Values& values);

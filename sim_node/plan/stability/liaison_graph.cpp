@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "sim_node/plan/stability/bend_slope.h"
 #include "sim_node/plan/stability/force_slopes.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/parameter_bounds.h"
@@ -320,7 +321,8 @@ namespace {
 
 /// A bend as a link along each side: |v / l - R u / k|^2 is at most (1 / k + 1 / l) (|u|^2 / k + |v|^2 / l), as
 /// equal as can be where it bends the most.
-void add_bend(const NetworkDescription& network, std::uint32_t index, LiaisonGraph& graph) {
+void add_bend(const NetworkDescription& network, std::uint32_t index, bool knows_all_energy,
+              SlopesOfBends& slopes, LiaisonGraph& graph) {
   const engine::Bend& bend = network.bends[index];
   const LiaisonId id{LiaisonKind::kBend, index};
   LinearBounds bounds = linear_bounds(network, bend, graph.reach);
@@ -334,21 +336,35 @@ void add_bend(const NetworkDescription& network, std::uint32_t index, LiaisonGra
   } else if (bounds.viscosity.low < 0.0) {
     slope.uncertainty = kMayDriveMotion;
   }
+  const bool has_laws =
+      bend.has_states() && has_laws_of_bends(network.state_machines[bend.state_machine]);
+  const Slope of_laws = has_laws ? slopes.slope_of(bend) : Slope{};
+  if (slope.uncertainty == nullptr) slope.uncertainty = of_laws.uncertainty;
+  slope.bounded = of_laws.bounded;
   note(network, slope, id, graph);
   // A change of state is no change of a slope, but that of a parameter is one.
   const bool varies =
       bend.has_states() && laws_ask_for_variable(network.state_machines[bend.state_machine]);
-  const double variation = varies ? bounds.stiffness.high - bounds.stiffness.low : 0.0;
-  const double stiffness = std::max(bounds.stiffness.high, 0.0);
-  const double viscosity = std::max(bounds.viscosity.high, 0.0);
+  const double variation =
+      (varies ? bounds.stiffness.high - bounds.stiffness.low : 0.0) + of_laws.variation;
+  const double stiffness = std::max(bounds.stiffness.high, 0.0) + of_laws.stiffness;
+  const double viscosity = std::max(bounds.viscosity.high, 0.0) + of_laws.viscosity;
+  const double fall = knows_all_energy ? of_laws.fall : of_laws.fall_anywhere;
   const double both = 1.0 / bend.length_ab + 1.0 / bend.length_bc;
   const double at_ab = both / bend.length_ab;
   const double at_bc = both / bend.length_bc;
-  const double ratio = max_damping_ratio(network, bend, graph.reach);
-  graph.edges.push_back({bend.mat_a, bend.mat_b, at_ab * stiffness, at_ab * viscosity, id, true,
-                         at_ab * variation, ratio});
-  graph.edges.push_back({bend.mat_b, bend.mat_c, at_bc * stiffness, at_bc * viscosity, id, true,
-                         at_bc * variation, ratio});
+  const double ratio =
+      has_laws ? damping_ratio(viscosity, std::max(bounds.stiffness.low, 0.0) +
+                                              std::max(of_laws.stiffness - of_laws.variation, 0.0))
+               : max_damping_ratio(network, bend, graph.reach);
+  const auto add_side = [&](std::uint32_t mat_a, std::uint32_t mat_b, double share) {
+    graph.edges.push_back({mat_a, mat_b, share * stiffness, share * viscosity, id, slope.bounded,
+                           share * variation, ratio});
+    graph.edges.back().fall = share * fall;
+    graph.edges.back().fall_anywhere = share * of_laws.fall_anywhere;
+  };
+  add_side(bend.mat_a, bend.mat_b, at_ab);
+  add_side(bend.mat_b, bend.mat_c, at_bc);
 }
 
 void add_maxwell_link(const NetworkDescription& network, std::uint32_t index, LiaisonGraph& graph) {
@@ -570,7 +586,9 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
   }
   for (index = 0; index < network.maxwell_links.size(); ++index)
     add_maxwell_link(network, index, graph);
-  for (index = 0; index < network.bends.size(); ++index) add_bend(network, index, graph);
+  SlopesOfBends slopes_of_bends(network, reach);
+  for (index = 0; index < network.bends.size(); ++index)
+    add_bend(network, index, knows_all_energy, slopes_of_bends, graph);
   double stored = 0.0;
   for (index = 0; index < network.sets.size(); ++index)
     stored += add_set(network, index, reach, graph);

@@ -9,6 +9,7 @@
 
 #include "node/disjoint_sets.h"
 #include "sim_node/engine/links/bend_shape.h"
+#include "sim_node/plan/stability/bend_slope.h"
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/parameter_bounds.h"
@@ -42,7 +43,7 @@ double weight_of(const engine::NetworkDescription& network) {
   return weight;
 }
 
-/// True if a link or a set has a law that the energy of the scene may have to bound.
+/// True if a link, a bend or a set has a law that the energy of the scene may have to bound.
 bool needs_energy(const engine::NetworkDescription& network) {
   const auto is_free = [](const engine::Law& law) {
     return std::holds_alternative<engine::Power>(law) ||
@@ -55,7 +56,11 @@ bool needs_energy(const engine::NetworkDescription& network) {
                                  return is_free(state.elasticity) || is_free(state.dissipation);
                                });
   };
+  const auto needs_of_bend = [&](const engine::Bend& bend) {
+    return bend.has_states() && has_laws_of_bends(network.state_machines[bend.state_machine]);
+  };
   return std::ranges::any_of(network.state_links, needs) ||
+         std::ranges::any_of(network.bends, needs_of_bend) ||
          std::ranges::any_of(network.sets, needs);
 }
 
@@ -141,6 +146,7 @@ double stored_at_start(const engine::NetworkDescription& network, const Reach& r
     energy += 0.5 * link.start_force * link.start_force / softest;
   }
   for (const engine::Bend& bend : network.bends) {
+    if (bend.has_states()) energy += brought_by_laws(network, bend);
     const double w = engine::bend_at_start(network, bend).norm();
     const double stiffest = linear_bounds(network, bend, reach).stiffness.high;
     if (!std::isfinite(stiffest)) continue;  // then nothing is certain of it

@@ -13,6 +13,7 @@
 
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
+#include "sim_node/plan/stability/bend_slope.h"
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
@@ -219,8 +220,18 @@ void StartTangent::add_bend(const engine::NetworkDescription& network, const eng
   engine::Vec3 direction = engine::Vec3::UnitX();
   if (dimension_ > 1)
     direction = is_bent ? Eigen::Vector3d(w.normalized()) : Eigen::Vector3d::Zero();
+  BendTangent laws;
+  if (bend.has_states()) laws = tangent_of_laws(network, bend);
+  Tangent of_viscosity;
+  of_viscosity.viscosity = laws.viscosity;
+  if (!laws.is_sure || drives_beside_dampers(of_viscosity)) {
+    hold(bend.mat_a, bend.mat_b);
+    hold(bend.mat_b, bend.mat_c);
+  }
   bends_.push_back({bend, engine::BendShape(turn, dimension_), direction,
-                    stiffness_weight * bend.stiffness, viscosity_weight * bend.viscosity});
+                    stiffness_weight * (bend.stiffness + laws.across),
+                    viscosity_weight * (bend.viscosity + laws.viscosity),
+                    stiffness_weight * (laws.along - laws.across)});
 }
 
 void StartTangent::add_set(const engine::NetworkDescription& network, const engine::SetLiaison& set,
@@ -330,9 +341,10 @@ void StartTangent::multiply(const Columns& x, double stiffness_factor, double vi
     const engine::Bend& bend = part.bend;
     const Eigen::Vector3d w =
         part.turn(moved.col(bend.mat_a), moved.col(bend.mat_b), moved.col(bend.mat_c));
+    const double along =
+        stiffness_factor * part.stiffness_along + viscosity_factor * part.viscosity;
     const Eigen::Vector3d moment =
-        stiffness_factor * part.stiffness * w +
-        viscosity_factor * part.viscosity * part.direction.dot(w) * part.direction;
+        stiffness_factor * part.stiffness * w + along * part.direction.dot(w) * part.direction;
     const Eigen::Vector3d on_a = part.turn.force_on_a(moment);
     const Eigen::Vector3d on_c = part.turn.force_on_c(moment);
     forces.col(bend.mat_a) -= on_a;

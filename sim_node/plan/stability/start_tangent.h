@@ -46,13 +46,14 @@ class StartTangent {
     double viscosity;
     double maxwell_viscosity;  // 0 unless a Maxwell element, whose stiffness is `along`
   };
-  /// A liaison of three MATs: stiffness in all directions, viscosity along one.
+  /// A liaison of three MATs: stiffness in all directions, more of it and viscosity along one.
   struct BendPart {
     engine::Bend bend;
     engine::BendShape turn;  // of the bend, without its rest angle in 1 dimension
     Eigen::Vector3d direction;
     double stiffness;
     double viscosity;
+    double stiffness_along;  // beside the other
   };
   using Columns = Eigen::Matrix3Xd;
 

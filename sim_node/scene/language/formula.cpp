@@ -178,9 +178,41 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
   return compiled;
 }
 
+namespace {
+
+/// True if a law may ask for a quantity.
+bool is_known_to_laws_of(ExpressionOwner owner, engine::Quantity quantity) {
+  if (owner == ExpressionOwner::kLink) return engine::is_known_to_laws(quantity);
+  return quantity == engine::Quantity::kBend || quantity == engine::Quantity::kAngularSpeed;
+}
+
+/// A quantity of either owner; nullptr where the word is none.
+const QuantityName* any_quantity(ExpressionOwner owner, const std::string& word) {
+  const QuantityName* const own = quantity_of(owner, word);
+  return own != nullptr || owner == ExpressionOwner::kLink ? own : find_quantity(word);
+}
+
+/// Puts the quantities of a bend to those of laws.
+void put_to_quantities_of_laws(engine::Program& program) {
+  for (Instruction& instruction : program.code) {
+    if (instruction.operation != Operation::kQuantity) continue;
+    instruction.quantity = instruction.quantity == engine::Quantity::kBend
+                               ? engine::Quantity::kElongation
+                               : engine::Quantity::kSpeed;
+  }
+  // A factor times a quantity would be read as a stiffness or a viscosity of a bend, which is not linear in it. What
+  // is negated twice has the same bits.
+  const engine::Expression law{program};
+  if (law.factor_size(engine::Quantity::kElongation) + law.factor_size(engine::Quantity::kSpeed) >
+      0)
+    program.code.insert(program.code.end(), 2, {Operation::kNegate, {}, 0.0, 0});
+}
+
+}  // namespace
+
 std::optional<engine::Program> compile_law(const Value& text, const std::string& what,
                                            const ParameterValues& parameters, AskedOutside& outside,
-                                           Problems& problems) {
+                                           Problems& problems, ExpressionOwner owner) {
   const std::optional<Expression> expression = parse_expression(text, what, problems);
   if (!expression) return std::nullopt;
   if (expression->is_truth) {
@@ -191,20 +223,24 @@ std::optional<engine::Program> compile_law(const Value& text, const std::string&
   bool is_law = true;
   for (const ExpressionWord& word : expression->words) {
     const QuantityName* const known =
-        word.kind == ExpressionWord::Kind::kName ? find_quantity(word.name) : nullptr;
+        word.kind == ExpressionWord::Kind::kName ? any_quantity(owner, word.name) : nullptr;
     const bool has_edge =
         word.kind == ExpressionWord::Kind::kOperation && engine::is_edge(word.operation);
-    if (!has_edge && (known == nullptr || engine::is_known_to_laws(known->quantity))) continue;
+    if (!has_edge && (known == nullptr || is_known_to_laws_of(owner, known->quantity))) continue;
     problems.error(
         expression->place_of(word),
         what + " cannot ask for '" + (has_edge ? "rising' or 'falling" : word.name) + "'",
-        "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg");
+        owner == ExpressionOwner::kBend
+            ? "it may ask for bend_rad, the angle beyond the rest angle, and speed_rad_per_s"
+            : "it may ask for distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg");
     is_law = false;
   }
+  if (!is_law && owner == ExpressionOwner::kBend) return std::nullopt;
   std::uint32_t slots = 0;
   std::optional<CompiledExpression> compiled =
-      compile(*expression, what, parameters, slots, problems, &outside);
+      compile(*expression, what, parameters, slots, problems, &outside, owner);
   if (!compiled || !is_law) return std::nullopt;
+  if (owner == ExpressionOwner::kBend) put_to_quantities_of_laws(compiled->program);
   return std::move(compiled->program);
 }
 

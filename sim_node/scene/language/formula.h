@@ -93,10 +93,12 @@ std::optional<CompiledExpression> compile(const Expression& expression, const st
                                           ExpressionOwner owner = ExpressionOwner::kLink);
 
 /// A law: a tension [N] over distance_m, elongation_m, speed_m_per_s, mass_a_kg, mass_b_kg, the
-/// parameters and what is outside the link. Whatever is wrong is a problem of its place.
+/// parameters and what is outside the link. Of a bend a moment [N m] over bend_rad and speed_rad_per_s, which
+/// the program asks for as elongation and speed. Whatever is wrong is a problem of its place.
 std::optional<engine::Program> compile_law(const config::Value& text, const std::string& what,
                                            const ParameterValues& parameters, AskedOutside& outside,
-                                           config::Problems& problems);
+                                           config::Problems& problems,
+                                           ExpressionOwner owner = ExpressionOwner::kLink);
 
 /// A number of a liaison, or a formula whose value changes while a run goes on.
 struct ChangingNumber {

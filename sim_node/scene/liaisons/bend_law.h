@@ -23,20 +23,24 @@ struct BendLaw {
                                  ///< none
 };
 
-/// The parameters of a bend, or of a state of one, that may follow formulas.
+/// The parameters of a bend, or of a state of one, that may follow formulas, and its laws beside them.
 struct BendParameters {
   ChangingNumber stiffness;   ///< [N m/rad]
   ChangingNumber viscosity;   ///< [N m s/rad]
   ChangingNumber rest_angle;  ///< [rad]
   bool has_rest = false;      ///< a rest angle is written
+  engine::Law elasticity;     ///< moment [N m] over the bend
+  engine::Law dissipation;    ///< moment [N m] over its rate
 
-  bool change() const noexcept {
-    return stiffness.changes() || viscosity.changes() || rest_angle.changes();
+  /// True if a stiffness, a viscosity and a rest angle that are numbers are not all of it.
+  bool need_a_state() const noexcept {
+    return stiffness.changes() || viscosity.changes() || rest_angle.changes() ||
+           !is_none(elasticity) || !is_none(dissipation);
   }
 };
 
 /// Reads the keys of a state of a bend, or of a bend without states.
-/// @param needs_stiffness  it must be written
+/// @param needs_stiffness  it must be written, unless there is an elasticity
 BendParameters read_bend_parameters(config::MappingReader& reader, int space, bool needs_stiffness,
                                     const ParameterValues& parameters, AskedOutside& outside,
                                     config::Problems& problems);
@@ -45,7 +49,7 @@ BendParameters read_bend_parameters(config::MappingReader& reader, int space, bo
 engine::LinkState state_of(const BendParameters& parameters);
 
 /// Reads the keys of a liaison of this kind, but for its states: with them it has no stiffness of its own.
-/// @param changing  becomes its parameters where one of them follows a formula: then the law has none
+/// @param changing  becomes its parameters where they need a state: then the law has none
 BendLaw read_bend_law(config::MappingReader& reader, int space, const ParameterValues& parameters,
                       AskedOutside& outside, config::Problems& problems,
                       std::optional<BendParameters>& changing);

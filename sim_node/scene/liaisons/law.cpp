@@ -23,18 +23,19 @@ class FieldReader {
  public:
   /// @param argument  key of what the law is a function of
   /// @param formulas  those of its fields are added
-  FieldReader(config::MappingReader& reader, const char* argument,
+  FieldReader(config::MappingReader& reader, const char* argument, ExpressionOwner owner,
               const ParameterValues& parameters, AskedOutside& outside, Problems& problems,
               std::vector<engine::ParameterFormula>& formulas)
       : reader_(reader),
         argument_(argument),
+        owner_(owner),
         parameters_(parameters),
         outside_(outside),
         problems_(problems),
         formulas_(formulas) {}
 
   void operator()(const LawField& field, double& value) {
-    const Range range{field.lowest, field.highest, field.lowest_excluded, field.hint};
+    const Range range{field.lowest, field.highest, field.lowest_excluded, hint_of(field)};
     if (field.follows) {
       reader_.required_value(field.key);
       const ChangingNumber changing =
@@ -51,11 +52,13 @@ class FieldReader {
                      quoted(field.key) + " must be a multiple of " +
                          config::number_text(field.multiple_of) + ", got " +
                          config::number_text(value),
-                     field.hint);
+                     hint_of(field));
   }
 
   void operator()(const LawField& field, std::vector<double>& list) {
-    const char* key = field.key == nullptr ? argument_ : field.key;
+    const bool has_other = owner_ == ExpressionOwner::kBend && field.bend_key != nullptr;
+    const char* named = has_other ? field.bend_key : field.key;
+    const char* key = named == nullptr ? argument_ : named;
     const std::size_t errors_before = problems_.error_count();
     for (const Value& item : reader_.required_sequence(key).items())
       list.push_back(read_formula(item, quoted(key), 0.0, {}, parameters_, problems_));
@@ -73,13 +76,18 @@ class FieldReader {
     for (const Value& item : items.items()) {
       config::MappingReader reader(item, std::string(Item::kName) + " of " + reader_.what(),
                                    problems_);
-      Item::visit_fields(list.emplace_back(), FieldReader(reader, argument_, parameters_, outside_,
-                                                          problems_, formulas_));
+      Item::visit_fields(list.emplace_back(), FieldReader(reader, argument_, owner_, parameters_,
+                                                          outside_, problems_, formulas_));
       reader.finish();
     }
   }
 
  private:
+  const char* hint_of(const LawField& field) const {
+    const bool has_other = owner_ == ExpressionOwner::kBend && field.bend_hint != nullptr;
+    return has_other ? field.bend_hint : field.hint;
+  }
+
   std::string quoted(const char* key) const {
     return std::string("'") + key + "' in " + reader_.what();
   }
@@ -102,6 +110,7 @@ class FieldReader {
 
   config::MappingReader& reader_;
   const char* argument_;
+  ExpressionOwner owner_;
   const ParameterValues& parameters_;
   AskedOutside& outside_;
   Problems& problems_;
@@ -124,19 +133,20 @@ void for_each_law(const Function& function) {
 
 /// Reads the key of a law. @param argument  key of the points of a table
 Law read_law(config::MappingReader& reader, const char* key, const char* argument, bool of_speed,
-             const ParameterValues& parameters, AskedOutside& outside, Problems& problems,
-             std::vector<engine::ParameterFormula>& formulas) {
+             ExpressionOwner owner, const ParameterValues& parameters, AskedOutside& outside,
+             Problems& problems, std::vector<engine::ParameterFormula>& formulas) {
   const Value value = reader.optional_value(key);
   const std::string what = std::string(key) + " of " + reader.what();
   if (!value.exists()) return {};
   if (value.kind() == Value::Kind::kScalar) {
     std::optional<engine::Program> program =
-        compile_law(value, what, parameters, outside, problems);
+        compile_law(value, what, parameters, outside, problems, owner);
     return program ? Law(engine::Expression{std::move(*program)}) : Law();
   }
   std::vector<std::string> kinds;
   for_each_law([&]<class Type>(const Type& /*law*/) {
-    if (!of_speed || Type::kArgument != engine::LawArgument::kDistance)
+    const bool has_distance = !of_speed && owner == ExpressionOwner::kLink;
+    if (has_distance || Type::kArgument != engine::LawArgument::kDistance)
       kinds.emplace_back(Type::kName);
   });
   config::MappingReader fields(value, what, problems);
@@ -145,8 +155,8 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
   if (!fields.ok()) return law;
   for_each_law([&]<class Type>(Type read) {
     if (kind != Type::kName) return;
-    Type::visit_fields(read,
-                       FieldReader(fields, argument, parameters, outside, problems, formulas));
+    Type::visit_fields(
+        read, FieldReader(fields, argument, owner, parameters, outside, problems, formulas));
     if constexpr (requires { read.find_slopes(); }) read.find_slopes();
     law = std::move(read);
   });
@@ -158,15 +168,18 @@ Law read_law(config::MappingReader& reader, const char* key, const char* argumen
 
 engine::Law read_elasticity(config::MappingReader& reader, const ParameterValues& parameters,
                             AskedOutside& outside, Problems& problems,
-                            std::vector<engine::ParameterFormula>& formulas) {
-  return read_law(reader, "elasticity", "at_m", /*of_speed=*/false, parameters, outside, problems,
-                  formulas);
+                            std::vector<engine::ParameterFormula>& formulas,
+                            ExpressionOwner owner) {
+  const char* const argument = owner == ExpressionOwner::kBend ? "at_rad" : "at_m";
+  return read_law(reader, "elasticity", argument, /*of_speed=*/false, owner, parameters, outside,
+                  problems, formulas);
 }
 
 engine::Law read_dissipation(config::MappingReader& reader, const ParameterValues& parameters,
-                             AskedOutside& outside, Problems& problems) {
+                             AskedOutside& outside, Problems& problems, ExpressionOwner owner) {
   std::vector<engine::ParameterFormula> none;  // no law over the speed has such a field
-  return read_law(reader, "dissipation", "at_m_per_s", /*of_speed=*/true, parameters, outside,
+  const char* const argument = owner == ExpressionOwner::kBend ? "at_rad_per_s" : "at_m_per_s";
+  return read_law(reader, "dissipation", argument, /*of_speed=*/true, owner, parameters, outside,
                   problems, none);
 }
 

@@ -162,7 +162,10 @@ class LiaisonReader {
   void follow(const MappingReader& reader, const ChangingNumber& stiffness,
               const ChangingNumber& viscosity, LinkLaw& law) {
     law.stiffness = law.viscosity = 0.0;
-    take_state(reader, state_of({stiffness, viscosity, {}, false}), law);
+    BendParameters parameters;
+    parameters.stiffness = stiffness;
+    parameters.viscosity = viscosity;
+    take_state(reader, state_of(parameters), law);
   }
 
   /// Gives a law a state machine of this state alone, once that has been checked.
