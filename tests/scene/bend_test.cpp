@@ -193,14 +193,15 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
             "elasticity of state 'on' of liaison 'b' cannot ask for 'elongation_m'",
             "it may ask for bend_rad, the angle beyond the rest angle, and speed_rad_per_s"},
-        BadScene{
-            kHead2,
-            R"(liaisons: {b: {kind: bending, elasticity: ^max(bend_rad, 0)}}
+        BadScene{kHead2,
+                 R"(liaisons: {b: {kind: bending, elasticity: ^bend_rad + abs(bend_rad)}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-            "'elasticity' in liaison 'b' must act alike both ways in 2 dimensions, got 1 N m "
-            "at 1 rad and 0 N m the other way",
-            "write it with abs(bend_rad) and sign(bend_rad); a table has its points below 0 too"},
+                 "'elasticity' in liaison 'b' must act alike both ways in 2 dimensions, got 2 N m "
+                 "at 1 rad and 0 N m the other way",
+                 "as max(bend_rad - 0.5, 0) + min(bend_rad + 0.5, 0) does; a table has its points "
+                 "below 0 "
+                 "too"},
         BadScene{
             kHead2,
             R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: 1, dissipation: ^speed_rad_per_s^2}}
@@ -208,7 +209,7 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
             "'dissipation' in liaison 'b' must act alike both ways in 2 dimensions, got 1 N m "
             "at 1 rad/s and 1 N m the other way",
-            "write it with abs(speed_rad_per_s) and sign(speed_rad_per_s)"},
+            "as speed_rad_per_s * abs(speed_rad_per_s) does"},
         BadScene{
             kHead3,
             R"(liaisons: {b: {kind: bending, elasticity: ^bend_rad + 0.5}}
@@ -218,15 +219,18 @@ matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0, 0]}}
             "in 3 dimensions a straight bend has no direction"},
         BadScene{
             kHead2,
-            R"(liaisons: {b: {kind: bending, elasticity: {kind: table, at_rad: [-1, 0, 1], ^force_n: [-1, 0, 1]}}}
+            R"(liaisons: {b: {kind: bending, elasticity: {kind: table, at_rad: [-1, 0, 1], moment_n_m: ^[-1, 1]}}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-            "", ""},
+            "'moment_n_m' in elasticity of liaison 'b' must have one number for each of 'at_rad', "
+            "3, got 2",
+            ""},
         BadScene{kHead2,
                  R"(liaisons: {b: {kind: bending, elasticity: {kind: ^rings, rings: []}}}
 matter: {a: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
-                 "", ""},
+                 "'kind' in elasticity of liaison 'b' must be one of table, power, got 'rings'",
+                 ""},
         BadScene{
             kHead2,
             R"(liaisons: {b: {kind: bending, stiffness_n_m_per_rad: ^time_s, elasticity: 2 * bend_rad}}
@@ -555,7 +559,7 @@ links:
     const Parameters::Outcome outcome = parameters.set("limb", name, value);
     ASSERT_EQ(outcome.problem, "");
     ASSERT_EQ(outcome.changes.size(), 1u);
-    world.replace_state_machine(outcome.changes[0].index, outcome.changes[0].state_machine);
+    world.replace_state_machine(outcome.changes[0].first, outcome.changes[0].state_machine);
   }
   const engine::NetworkDescription& network = scene->network;
   const std::uint32_t index = network.bends[0].state_machine;

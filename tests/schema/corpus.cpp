@@ -159,6 +159,8 @@ matter:
 liaisons:
   touch: {stiffness_n_per_m: 100, range_m: 0.1, pulls: false}
   steel: {kind: bending, stiffness_n_m_per_rad: 1, viscosity_n_m_s_per_rad: 0.1, rest_rad: 0.1, length_m: 0.1}
+  cord: {kind: bending, elasticity: 2 * bend_rad, dissipation: 0.1 * speed_rad_per_s}
+  tin: {kind: bending, elasticity: {kind: table, at_rad: [-1, 1], moment_n_m: [-1, 1]}, dissipation: {kind: table, at_rad_per_s: [-1, 1], moment_n_m: [-1, 1]}}
 links:
   - {liaison: steel, along: loop, stiffness_n_m_per_rad: 2, viscosity_n_m_s_per_rad: 0.2}
   - {liaison: touch, between_sets: [heap, floor], range_m: 0.1}

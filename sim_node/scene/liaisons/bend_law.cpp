@@ -77,9 +77,10 @@ void check_both_ways(config::MappingReader& reader, const char* key, const engin
                   what + " must act alike both ways in 2 dimensions, got " + text(unlike->moment) +
                       " N m at " + text(unlike->place) + (of_speed ? " rad/s" : " rad") + " and " +
                       text(unlike->back) + " N m the other way",
-                  of_speed ? "write it with abs(speed_rad_per_s) and sign(speed_rad_per_s)"
-                           : "write it with abs(bend_rad) and sign(bend_rad); a table has its "
-                             "points below 0 too");
+                  of_speed
+                      ? "as speed_rad_per_s * abs(speed_rad_per_s) does"
+                      : "as max(bend_rad - 0.5, 0) + min(bend_rad + 0.5, 0) does; a table has its "
+                        "points below 0 too");
 }
 
 /// Reads the laws of a bend beside its stiffness and its viscosity.
