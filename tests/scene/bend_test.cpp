@@ -584,5 +584,43 @@ links: [{liaison: steel, along: rod}]
             "the integrator modal does not take stiffness against bending, which steel has");
 }
 
+TEST(BendsWithLaws, NameThemselvesInARefusal) {
+  config::Problems problems;
+  load_scene_text(
+      R"(cordis: 1
+space: 2
+step: {rate_hz: 1000, integrator: symplectic4}
+liaisons: {cord: {kind: bending, elasticity: bend_rad^3}}
+matter: {rod: {kind: string, count: 3, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1}}
+links: [{liaison: cord, along: rod}]
+)",
+      "t", problems);
+  ASSERT_EQ(problems.all().size(), 1u) << problems.text();
+  EXPECT_EQ(problems.all()[0].message,
+            "the integrator symplectic4 does not take a law or a parameter of a bend that is no "
+            "number, which cord has");
+}
+
+TEST(BendsWithLaws, OfTheLibraryAreRead) {
+  const std::string library =
+      std::string(CORDIS_SOURCE_DIR) + "/launch_configs/liaisons/bends.yaml";
+  for (const char* const liaison : {"cord", "tin", "rubber"}) {
+    const Scene scene =
+        sound_scene(2, test::filled(R"(liaisons: {include: <library>}
+matter: {rod: {kind: string, count: 4, mass_kg: 1, from_m: [0, 0], to_m: [1, 0], stiffness_n_per_m: 1}}
+links: [{liaison: <liaison>, along: rod}]
+)",
+                                    {{"library", library}, {"liaison", std::string(liaison)}}));
+    ASSERT_EQ(scene.network.bends.size(), 2u);
+    const engine::StateMachine& machine =
+        scene.network.state_machines[scene.network.bends[0].state_machine];
+    const auto moment = [&](double bend) {
+      return elastic_tension(machine.states[0].elasticity, {bend, bend});
+    };
+    EXPECT_GT(moment(1.0), moment(0.2)) << liaison;
+    EXPECT_EQ(moment(-1.0), -moment(1.0)) << liaison;
+  }
+}
+
 }  // namespace
 }  // namespace cordis::scene
