@@ -126,6 +126,39 @@ links:
 )" + more;
 }
 
+/// In space a bend has no sign, in a plane it has one.
+TEST(Dimension, ASceneThatAsksForAnAngleStaysInSpace) {
+  const auto scene_of = [](const std::string& liaison, const std::string& signal) {
+    return R"(cordis: 1
+space: 3
+step: {rate_hz: 20000}
+reduce: [dimension]
+world: {gravity_m_per_s2: [0, 9.81, 0]}
+matter:
+  strip: {kind: string, count: 4, mass_kg: 0.02, from_m: [0, 1, 0], to_m: [0.15, 1, 0], ends: first_fixed, stiffness_n_per_m: 5000}
+liaisons:
+  tin: {kind: bending, )" +
+           liaison +
+           R"(}
+links:
+  - {liaison: tin, along: strip, name: s}
+signals:
+  shown: {)" +
+           signal + "}\n";
+  };
+  const std::string of_place = "of: \"strip[3]\", quantity: position, axis: y";
+  const std::string yields =
+      "states: {whole: {stiffness_n_m_per_rad: 0.01, exits: [{to: limp, when: bend_rad > 0.1}]}, "
+      "limp: {final: true}}";
+  EXPECT_EQ(reduced(scene_of(yields, of_place)).space(), 3);
+  EXPECT_EQ(reduced(scene_of("elasticity: bend_rad", "of: \"s[0]\", quantity: moment")).space(), 3);
+  EXPECT_EQ(reduced(scene_of("elasticity: bend_rad", "of: \"s[0]\", quantity: speed")).space(), 3);
+  // A law alone acts alike in both.
+  const std::string stop = scene_of("elasticity: \"max(bend_rad - 0.05, 0)\"", of_place);
+  ASSERT_EQ(reduced(stop).space(), 2);
+  EXPECT_EQ(signals_after(loaded(stop), 2000), signals_after(reduced(stop), 2000));
+}
+
 TEST(Dimension, ALineIsComputedIn1DWhereTheSignOfItsLinksMakesNoDifference) {
   const scene::Scene whole = loaded(on_a_line("0"));
   const scene::Scene scene = reduced(on_a_line("0"));

@@ -57,6 +57,16 @@ bool asks_for_angular_momentum(const scene::Scene& scene) {
   });
 }
 
+/// True if something asks for the angle of a bend, which has a sign in a plane, and none in space.
+bool asks_for_an_angle(const scene::Scene& scene) {
+  if (std::ranges::any_of(scene.network.state_machines, engine::asks_for_angle)) return true;
+  return asks_for(scene, [](const engine::Variable& variable) {
+    const bool is_speed = variable.kind == engine::LinkKind::kBend &&
+                          variable.quantity == engine::VariableKind::kSpeed;
+    return is_speed || engine::is_of_angle(variable.quantity);
+  });
+}
+
 /// True if the sign of the links of a line makes no difference.
 bool fits_a_line(const scene::Scene& scene) {
   const engine::NetworkDescription& network = scene.network;
@@ -154,6 +164,7 @@ std::string confine(scene::Scene& scene) {
   const auto dimension = static_cast<int>(left.size());
   const bool fits = dimension > 1 || (dimension == 1 && fits_a_line(scene));
   if (dimension == scene.space() || !fits || asks_for_an_axis(scene.network)) return {};
+  if (scene.space() == 3 && asks_for_an_angle(scene)) return {};
   std::copy(left.begin(), left.end(), subspace.axes.begin());
   const std::string before = std::to_string(scene.space());
   project(subspace, dimension, scene);
