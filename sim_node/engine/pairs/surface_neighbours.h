@@ -111,7 +111,7 @@ class SurfaceNeighbours {
   NeighbourRows rows() const noexcept {
     return {0, shapes_.size(), start_.data(), neighbour_.data(), 0};
   }
-  /// Those that have pairs, ascending, and some few without between them.
+  /// Rows with pairs, ascending; a few rows without pairs may stand between them.
   const std::vector<NeighbourRows>& near_rows() const noexcept { return near_rows_; }
   /// Surfaces that have pairs or are driven, ascending.
   const std::vector<std::uint32_t>& near() const noexcept { return near_; }
