@@ -21,6 +21,11 @@ std::string slides_text(const scene::Scene& scene, const plan::Settled& rest) {
 std::string hint_of(const scene::Scene& scene, const plan::Settled& rest) {
   const std::string name = scene::call_mat(scene, rest.pulled).name;
   const std::string larger = "write an until_n above " + short_text(rest.force);
+  if (rest.falls) {
+    return "nothing holds " + name +
+           ": it falls. Give it a liaison or a surface to rest on, or fix it; write more steps if "
+           "it still falls onto one";
+  }
   if (rest.slides_on) return "let friction hold " + name + ", fix it, or " + larger;
   if (rest.comes_nearer) return "it comes nearer to rest: write more steps, or " + larger;
   return "hold " + name + " by a liaison or a surface, fix it, or " + larger;

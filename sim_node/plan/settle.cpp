@@ -208,6 +208,9 @@ class Rest {
     return is_finite_;
   }
 
+  /// True if what pulls moves no position by as much as its rounding. Precondition: hold() was last.
+  bool stands_still() { return !has_moved() && step() && !has_moved(); }
+
   /// Twice that [J].
   double kinetic_energy() const {
     double sum = 0.0;
@@ -230,10 +233,12 @@ class Rest {
       pose.position.push_back(mat.position);
       if (mat.kind != MatKind::kMass) continue;
       const Vec3 load = mat.mass * network_.gravity_on(mat) + driven[i];
-      const double force = (world_->link_force(i) + load).norm();
+      const Vec3 of_links = world_->link_force(i);
+      const double force = (of_links + load).norm();
       if (!(force > pose.force)) continue;
       pose.force = force;
       pose.pulled = i;
+      pose.falls = of_links.norm() < kHeldShare * load.norm();
     }
     pose.slides_on = slides_on_[pose.pulled];
     return pose;
@@ -242,6 +247,16 @@ class Rest {
   std::uint64_t steps() const noexcept { return steps_; }
 
  private:
+  bool has_moved() const {
+    const auto positions = world_->positions();
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      if (positions.col(i).head<3>() != network_.mats[i].position) return true;
+    }
+    return false;
+  }
+
+  static constexpr double kHeldShare = 1e-3;  // of the load of a mass that does not fall
+
   void place_at(const Eigen::Ref<const Eigen::Matrix4Xd>& positions) {
     for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
       network_.mats[i].position = positions.col(i).head<3>();
@@ -294,6 +309,12 @@ class Pace {
     if (changes) step_ = step_ > kShortest * longest_ ? 0.5 * step_ : longest_;
     return changes;
   }
+  /// @return true if the next steps are longer: the longest
+  bool lengthens() noexcept {
+    const bool is_shorter = step_ < longest_;
+    step_ = longest_;
+    return is_shorter;
+  }
   double step() const noexcept { return step_; }
 
  private:
@@ -309,11 +330,13 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
   constexpr int kMaxHolds = 200;      // without less force; what still falls takes below 40
   constexpr double kLess = 0.99;      // of the least so far
   constexpr double kRounding = 1e-8;  // of the largest so far
+  constexpr int kMaxStillHolds = 2;   // in which friction may still change
   Rest rest(network, asked.has_friction);
   double largest = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double smallest_halfway = 0.0;
   int holds = 0;
+  int still_holds = 0;  // one after the other
   Pace pace(network.step);
   for (;;) {
     const std::uint64_t steps_before = rest.steps();
@@ -329,7 +352,13 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
       holds = 0;
     }
     pose.is_rounding = holds > kMaxHolds && pose.force < kRounding * largest;
+    if (!pose.is_rounding && rest.stands_still()) {
+      pose.is_rounding = !pace.lengthens() && ++still_holds > kMaxStillHolds;
+      rest.set_step(pace.step());
+      if (!pose.is_rounding) continue;
+    }
     if (pose.is_rounding) return pose;
+    still_holds = 0;
     double before = 0.0;
     for (double now = rest.kinetic_energy(); now >= before && rest.steps() < asked.max_steps;
          now = rest.kinetic_energy()) {

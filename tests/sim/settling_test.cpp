@@ -129,7 +129,7 @@ TEST(Settling, RefusesWhatDoesNotComeToRest) {
             R"(t:4:9: error: the scene has not come to rest in 51 steps: 0.1 N pull chain[0]
 settle: {until_n: 1.0e-9, steps: 50}
         ^
-  hint: hold chain[0] by a liaison or a surface, fix it, or write an until_n above 0.1)");
+  hint: nothing holds chain[0]: it falls. Give it a liaison or a surface to rest on, or fix it; write more steps if it still falls onto one)");
 }
 
 TEST(Settling, SaysThatMoreStepsHelp) {
@@ -152,6 +152,62 @@ TEST(Settling, TellsWhatRoundingKeepsFromRest) {
       << problems.text();
   EXPECT_NE(problems.text().find("hint: positions are rounded: write an until_n of "),
             std::string::npos);
+}
+
+/// A ball on a plane: its weight is held by 5e-4 m of the contact.
+std::string ball_on_a_plane(const std::string& settle, const std::string& friction = {}) {
+  return test::filled(R"(cordis: 1
+space: 2
+step: {rate_hz: 20000}
+<settle>
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  floor: {kind: plane, at_m: [0, 3], normal: y}
+  b: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.05}, at_m: [-4, 3.05]}
+liaisons:
+  land: {stiffness_n_per_m: 3000, viscosity_n_s_per_m: 1, pulls: false, range: rest<friction>}
+links: [{liaison: land, between_sets: [b, floor]}]
+)",
+                      {{"settle", settle}, {"friction", friction}});
+}
+
+TEST(Settling, EndsWhereRoundingStopsAllMotion) {
+  for (const char* const friction :
+       {"", ", friction: {static: 0.5, stiffness_n_per_m: 3000, viscosity_n_s_per_m: 5}"}) {
+    config::Problems problems;
+    scene_at_rest(ball_on_a_plane("settle: {until_n: 1.0e-20}", friction), problems);
+
+    const std::string text = problems.text();
+    EXPECT_NE(text.find("the scene comes no nearer to rest than "), std::string::npos) << text;
+    const std::string hint = "hint: positions are rounded: write an until_n of ";
+    const std::size_t begin = text.find(hint);
+    ASSERT_NE(begin, std::string::npos) << text;
+    const std::string reached =
+        text.substr(begin + hint.size(), text.find(" or more") - begin - hint.size());
+    config::Problems none;
+    scene_at_rest(ball_on_a_plane("settle: {until_n: " + reached + "}", friction), none);
+    EXPECT_EQ(none.text(), "");
+  }
+}
+
+TEST(Settling, SaysThatNothingHoldsWhatFalls) {
+  config::Problems problems;
+  scene_at_rest(R"(cordis: 1
+space: 2
+step: {rate_hz: 1000}
+settle: {until_n: 1.0e-6}
+world: {gravity_m_per_s2: [0, -9.81]}
+matter:
+  b: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.05}, at_m: [0, 0.1]}
+)",
+                problems);
+  EXPECT_NE(problems.text().find("0.981 N pull b\n"), std::string::npos) << problems.text();
+  EXPECT_NE(
+      problems.text().find(
+          "hint: nothing holds b: it falls. Give it a liaison or a surface to rest on, or fix it; "
+          "write more steps if it still falls onto one"),
+      std::string::npos)
+      << problems.text();
 }
 
 TEST(Settling, ReadsItsKeys) {
