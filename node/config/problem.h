@@ -15,6 +15,8 @@ struct Place {
   std::string file;
   int line = 0;    ///< from 1; 0 when there is none
   int column = 0;  ///< from 1, in characters
+
+  friend bool operator==(const Place&, const Place&) = default;
 };
 
 /// One thing that is wrong: `file:line:column: error: message`, the line with a caret, and a hint.

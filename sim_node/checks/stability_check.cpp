@@ -81,6 +81,41 @@ std::string rate_hint(const scene::Scene& scene, const plan::Stability& stabilit
          (stability.turning.liaison ? " in which no link turns about" : "");
 }
 
+/// Index of what a liaison follows: its time function if it is a force, else its state machine.
+std::optional<std::uint32_t> follower_of(const engine::NetworkDescription& network,
+                                         plan::LiaisonId liaison) {
+  switch (liaison.kind) {
+    case plan::LiaisonKind::kForce:
+      return network.drives[liaison.index].function;
+    case plan::LiaisonKind::kSet:
+      return network.sets[liaison.index].state_machine;
+    case plan::LiaisonKind::kMaxwellLink:
+      return network.maxwell_links[liaison.index].state_machine;
+    case plan::LiaisonKind::kBend:
+      return network.bends[liaison.index].state_machine;
+    case plan::LiaisonKind::kStateLink:
+      return network.state_links[liaison.index].state_machine;
+    case plan::LiaisonKind::kLink:
+      break;
+  }
+  return {};
+}
+
+/// What a liaison asks for, as the file names it there, and the place.
+std::string asked_text(const scene::Scene& scene, plan::LiaisonId liaison, std::uint32_t variable) {
+  CORDIS_ASSERT(variable < scene.asked_variables.size());
+  const scene::AskedVariable& asked = scene.asked_variables[variable];
+  const bool is_function = liaison.kind == plan::LiaisonKind::kForce;
+  const std::optional<std::uint32_t> index = follower_of(scene.network, liaison);
+  const auto use =
+      std::ranges::find_if(asked.uses, [&](const scene::AskedVariable::Use& candidate) {
+        return candidate.is_function == is_function && candidate.index == index;
+      });
+  const bool is_first = use == asked.uses.end();
+  return "'" + (is_first ? asked.name : use->name) + "' (" +
+         scene::place_text(is_first ? asked.place : use->place) + ")";
+}
+
 }  // namespace
 
 double rate_above(const scene::Scene& scene, double rate_hz) noexcept {
@@ -89,11 +124,13 @@ double rate_above(const scene::Scene& scene, double rate_hz) noexcept {
 
 std::string uncertainty_text(const scene::Scene& scene, const plan::Uncertainty& uncertainty) {
   std::string text = scene::call_liaison(scene, uncertainty.liaison).name + ": " + uncertainty.why;
+  if (uncertainty.beside && uncertainty.beside != uncertainty.liaison) {
+    const scene::Called beside = scene::call_liaison(scene, *uncertainty.beside);
+    text += ", in " + beside.name + " (" + scene::place_text(beside.place) + ")";
+  }
   const char* separator = ": ";
   for (const std::uint32_t variable : uncertainty.variables) {
-    CORDIS_ASSERT(variable < scene.asked_variables.size());
-    const scene::AskedVariable& asked = scene.asked_variables[variable];
-    text += separator + ("'" + asked.name + "' (" + scene::place_text(asked.place)) + ")";
+    text += separator + asked_text(scene, uncertainty.liaison, variable);
     separator = ", ";
   }
   return text;

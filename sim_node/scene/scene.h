@@ -147,8 +147,17 @@ inline constexpr double kHighestStepRate = 1.0e6;
 
 /// What a condition or a law asks for outside its link, as the file names it.
 struct AskedVariable {
+  /// What a state machine or a time function of the network asks for at another place than the first.
+  struct Use {
+    bool is_function = false;
+    std::uint32_t index = 0;  ///< in NetworkDescription::time_functions or state_machines
+    std::string name;
+    config::Place place;
+  };
+
   std::string name;
   config::Place place;  ///< where it is asked for first
+  std::vector<Use> uses = {};
 };
 
 /// A scene as it was read.

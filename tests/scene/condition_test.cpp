@@ -527,9 +527,8 @@ INSTANTIATE_TEST_SUITE_P(
                      "'m[1]' has no axis of its own, so 'position_m' has no direction",
                      "write the axis: position_x_m"},
         BadCondition{"^m[1].state == x", "a MAT has no quantity 'state' that others may ask for",
-                     "it has position_m, position_x_m, position_y_m, velocity_m_per_s, "
-                     "velocity_x_m_per_s, velocity_y_m_per_s, force_n, force_x_n, force_y_n, "
-                     "speed_m_per_s"},
+                     "it has position_x_m, position_y_m, velocity_x_m_per_s, velocity_y_m_per_s, "
+                     "force_x_n, force_y_n, speed_m_per_s"},
         BadCondition{"bolt.state == ^z", "'bolt' has no state 'z'", "it has x, y"},
         BadCondition{"^w.hinge.age_s > 1", "a link has no quantity 'age_s' that others may ask for",
                      "it has distance_m, elongation_m, speed_m_per_s, force_n"},

@@ -19,6 +19,8 @@ enum class LiaisonKind : std::uint8_t {
 struct LiaisonId {
   LiaisonKind kind = LiaisonKind::kLink;
   std::uint32_t index = 0;  ///< in the list of its kind
+
+  friend bool operator==(const LiaisonId&, const LiaisonId&) = default;
 };
 
 }  // namespace cordis::engine

@@ -40,10 +40,9 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
   return largest;
 }
 
-constexpr const char* kFed =
-    "its parameter changes and does work without an end, and a law without a largest slope may "
-    "take it";
-constexpr const char* kFallsWithoutEnd =
+constexpr const char* kFed = "its parameter changes and does work without an end";
+constexpr const char* kFallsWithoutEnd = "it brings in energy without an end";
+constexpr const char* kFallsOnItself =
     "it brings in energy without an end, and a law without a largest slope may take it";
 constexpr const char* kStartsTooStrong =
     "its start force is above stiffness times distance, and turns without a limit where its ends "
@@ -127,8 +126,10 @@ std::vector<std::uint32_t> unbounded_variables(const NetworkDescription& network
 void note(const NetworkDescription& network, const Slope& slope, LiaisonId liaison,
           LiaisonGraph& graph) {
   graph.bounded = graph.bounded && slope.bounded;
-  if (!slope.bounded && !(slope.law_is_bounded && slope.passing > 0.0))
+  if (!slope.bounded && !(slope.law_is_bounded && slope.passing > 0.0)) {
     graph.laws_are_bounded = false;
+    if (!graph.without_largest_slope) graph.without_largest_slope = liaison;
+  }
   if (slope.passing > graph.passing) {
     graph.passing = slope.passing;
     graph.passable = liaison;
@@ -274,7 +275,7 @@ double add_set(const NetworkDescription& network, std::uint32_t index, const Rea
   const SetStart start = set_start_of(network, set, reach);
   Slope slope = largest_slope_of(network, set, start);
   if (!slope.bounded && !std::isfinite(start.fall) && slope.uncertainty == nullptr)
-    slope.uncertainty = kFallsWithoutEnd;
+    slope.uncertainty = kFallsOnItself;
   if (network.dimension == 1 && !on_surfaces && slope.uncertainty == nullptr &&
       pull_jumps_where_pairs_pass(state_machine, start.rest_length, slope, start.reach))
     slope.uncertainty = "it pulls where its ends pass each other, and jumps there";
@@ -496,10 +497,11 @@ void add_forces(const NetworkDescription& network, LiaisonGraph& graph) {
     if (!graph.uncertainty && !slopes->uncertainty.empty())
       graph.uncertainty = {liaison, slopes->uncertainty, slopes->variables};
     graph.fed_by_forces = graph.fed_by_forces || slopes->brings_energy;
-    if (!graph.uncertainty && !graph.bounded && slopes->brings_energy)
-      graph.uncertainty = {liaison, kBringsEnergy};
-    if (!graph.uncertainty && slopes->brings_energy && may_pass)
-      graph.uncertainty = {liaison, kPresses};
+    const bool may_press = may_pass || !graph.bounded;
+    if (!graph.uncertainty && !graph.laws_are_bounded && slopes->brings_energy)
+      graph.uncertainty = {liaison, kBringsEnergy, {}, graph.takes_energy()};
+    if (!graph.uncertainty && slopes->brings_energy && may_press)
+      graph.uncertainty = {liaison, kPresses, {}, graph.passable};
     if (slopes->stiffness > 0.0 || slopes->viscosity > 0.0) {
       graph.forces.push_back({drive.mat, slopes->stiffness, slopes->viscosity, slopes->variation,
                               liaison, slopes->variation, slopes->variation});
@@ -597,11 +599,18 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
     contact.follows = follows_variables(network, {LiaisonKind::kSet, contact.set});
   graph.turning = turning_with_sets(network, reach, stored);
   add_forces(network, graph);
+  const std::string where = graph.laws_are_bounded
+                                ? ", and with enough energy a ball passes a surface"
+                                : ", and a law without a largest slope may take it";
   if (reach.endless && !graph.bounded && !graph.uncertainty) {
-    graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless}, kFallsWithoutEnd};
+    graph.uncertainty = {{LiaisonKind::kStateLink, *reach.endless},
+                         kFallsWithoutEnd + where,
+                         {},
+                         graph.takes_energy()};
   }
   if (reach.fed && !graph.bounded && !graph.uncertainty) {
-    graph.uncertainty = {*reach.fed, kFed, unbounded_variables(network, *reach.fed, reach)};
+    graph.uncertainty = {*reach.fed, kFed + where, unbounded_variables(network, *reach.fed, reach),
+                         graph.takes_energy()};
   }
   return graph;
 }

@@ -26,6 +26,7 @@ struct Uncertainty {
   /// What the law of the liaison asks for and nothing bounds, where that is why: indices in
   /// NetworkDescription::variables.
   std::vector<std::uint32_t> variables = {};
+  std::optional<LiaisonId> beside = {};  ///< the other liaison that the sentence is about
 
   /// True if what masses move comes in without a bound: no stiffness and no viscosity stands for that.
   bool leaves_variables_free() const noexcept { return !variables.empty(); }
@@ -101,6 +102,7 @@ struct LiaisonGraph {
   std::vector<double> medium_viscosity;  ///< per MAT [N s/m]; 0 for fixed points and port masses
   bool bounded = true;                   ///< false: a slope holds within the Reach alone
   bool laws_are_bounded = true;  ///< false: a law has no largest slope of its own; see Reach
+  std::optional<LiaisonId> without_largest_slope;  ///< the first with such a law
   /// The liaison of surfaces with the largest Slope::passing, of more than 0.
   std::optional<LiaisonId> passable;
   double passing = 0.0;  ///< its share of the energy that lets it through
@@ -113,6 +115,11 @@ struct LiaisonGraph {
   /// Maxwell elements with the largest parameters that they can have, in their order; a viscosity that nothing
   /// bounds is infinite.
   std::vector<engine::MaxwellLink> maxwell_links;
+
+  /// What may take energy that has no bound: a law without a largest slope, or a surface that balls pass.
+  std::optional<LiaisonId> takes_energy() const noexcept {
+    return laws_are_bounded ? passable : without_largest_slope;
+  }
 
   /// The stiffness of Maxwell elements depends on the step: 2 Z tanh(K dt / 2 Z) / dt, at most K.
   void set_step(double step);

@@ -83,7 +83,11 @@ class ConditionReader {
       : assembly_(assembly), signals_(signals) {}
 
   void read(std::uint32_t state_machine, const std::string& scope) {
-    pool().bind(state_machine, bindings_of(pool().references(state_machine), scope));
+    const std::vector<VariableReference>& references = pool().references(state_machine);
+    const StateMachinePool::Bindings bindings = bindings_of(references, scope);
+    for (std::size_t slot = 0; slot < references.size(); ++slot)
+      record_use(bindings[slot], references[slot], /*is_function=*/false, state_machine);
+    pool().bind(state_machine, bindings);
   }
 
   void read(const FunctionReferences& asked) {
@@ -91,12 +95,28 @@ class ConditionReader {
     engine::TimeFunction& function = assembly_.scene.network.time_functions[asked.function];
     for (engine::Program& formula : function.formula) {
       for (Instruction& instruction : formula.code) {
-        if (instruction.operation == Operation::kVariable) instruction = bindings[instruction.slot];
+        if (instruction.operation != Operation::kVariable) continue;
+        const VariableReference& reference = asked.references[instruction.slot];
+        instruction = bindings[instruction.slot];
+        record_use(instruction, reference, /*is_function=*/true, asked.function);
       }
     }
   }
 
  private:
+  /// Keeps where a state machine or a function asks for a variable, unless that is where it is asked for first.
+  void record_use(const Instruction& bound, const VariableReference& reference, bool is_function,
+                  std::uint32_t index) {
+    if (bound.operation != Operation::kVariable) return;
+    AskedVariable& asked = assembly_.scene.asked_variables[bound.slot];
+    const std::pair user{is_function, index};
+    last_users_.resize(assembly_.scene.asked_variables.size());
+    if (last_users_[bound.slot] == user) return;
+    last_users_[bound.slot] = user;
+    if (reference.place == asked.place) return;
+    asked.uses.push_back({is_function, index, name_of_reference(reference), reference.place});
+  }
+
   StateMachinePool::Bindings bindings_of(const std::vector<VariableReference>& references,
                                          const std::string& scope) {
     scope_ = scope;
@@ -118,9 +138,8 @@ class ConditionReader {
     assembly_.problems.error(place, message, hint);
   }
 
-  std::string name_of_reference() const {
-    return reference_->owner.empty() ? reference_->word
-                                     : reference_->owner + "." + reference_->word;
+  static std::string name_of_reference(const VariableReference& reference) {
+    return reference.owner.empty() ? reference.word : reference.owner + "." + reference.word;
   }
 
   /// The value of a variable; equal ones share a number.
@@ -130,7 +149,8 @@ class ConditionReader {
     const auto [known, is_new] = numbers_.emplace(variable, next);
     if (is_new) {
       variables.push_back(variable);
-      assembly_.scene.asked_variables.push_back({name_of_reference(), reference_->place});
+      assembly_.scene.asked_variables.push_back(
+          {name_of_reference(*reference_), reference_->place});
       if (variable.quantity == engine::VariableKind::kForce && is_of_one_mat(variable))
         assembly_.scene.network.kept_awake.push_back(variable.index);
     }
@@ -190,8 +210,13 @@ class ConditionReader {
     const std::vector<ConditionWord> words = words_of(owner, assembly_.scene.space());
     const auto known = std::ranges::find(words, reference_->word, &ConditionWord::text);
     if (known == words.end()) {
+      Variable along = variable;
+      const bool has_own_axis = take_own_direction(assembly_.scene, along);
       std::vector<std::string> texts;
-      for (const ConditionWord& word : words) texts.push_back(word.text);
+      for (const ConditionWord& word : words) {
+        const bool needs_axis = word.quantity->has_direction && word.axis < 0;
+        if (!needs_axis || has_own_axis) texts.push_back(word.text);
+      }
       fail(std::string(name_of(owner)) + " has no quantity '" + reference_->word +
                "' that others may ask for",
            hint_of(reference_->word, texts));
@@ -291,7 +316,9 @@ class ConditionReader {
   Assembly& assembly_;
   const std::vector<Signal>& signals_;
   std::map<Variable, std::uint32_t, InOrder> numbers_;  // of the variables of the network
-  config::PlaceSet failed_;                             // reported but for quiet ones
+  /// Per variable, what asked for it last: true for a function, and its index.
+  std::vector<std::optional<std::pair<bool, std::uint32_t>>> last_users_;
+  config::PlaceSet failed_;  // reported but for quiet ones
   bool is_quiet_ = false;
   const VariableReference* reference_ = nullptr;  // that is read
   std::string scope_;                             // of its link
