@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -43,6 +44,35 @@ std::string renamed_hint(const std::string& word, const std::vector<std::string>
     if (word == before && std::ranges::find(words, now) != words.end()) {
       return "'" + word + "' is called '" + std::string(now) + "' now";
     }
+  }
+  return {};
+}
+
+/// Words that people write, and the words of files for them.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kUsualWords{{
+    {"max", "largest"},
+    {"maximum", "largest"},
+    {"min", "smallest"},
+    {"minimum", "smallest"},
+    {"average", "mean"},
+    {"avg", "mean"},
+    {"total", "sum"},
+    {"rectangle", "box"},
+    {"cuboid", "box"},
+    {"rope", "string"},
+    {"cloth", "grid"},
+    {"verlet", "leapfrog"},
+    {"bend", "bending"},
+}};
+
+/// The hint for a word for which files have one of `words`; empty for any other.
+std::string usual_word_hint(const std::string& word, const std::vector<std::string>& words) {
+  std::string lower = word;
+  std::ranges::transform(lower, lower.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto& [usual, ours] : kUsualWords) {
+    if (lower == usual && std::ranges::find(words, ours) != words.end())
+      return "did you mean '" + std::string(ours) + "'?";
   }
   return {};
 }
@@ -387,7 +417,8 @@ std::string MappingReader::choice_of(const Value& value, const std::string& key,
   if (value.kind() == Value::Kind::kScalar &&
       std::find(choices.begin(), choices.end(), word) != choices.end())
     return word;
-  const std::string hint = renamed_hint(word, choices);
+  std::string hint = renamed_hint(word, choices);
+  if (hint.empty()) hint = usual_word_hint(word, choices);
   report(value.place(),
          name_of(key) + " must be one of " + listed(choices) + ", got " + value.described(),
          hint.empty() ? did_you_mean(word, choices) : hint);

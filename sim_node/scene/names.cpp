@@ -77,7 +77,8 @@ bool Names::is_in_unsound(const std::string& name) const noexcept {
 std::vector<std::string> Names::words(bool with_links) const {
   std::vector<std::string> words;
   for (const auto& [name, entry] : entries_) {
-    if ((with_links || entry.kind != Named::kLinks) && name.starts_with(scope_))
+    const bool is_nothing = entry.sound && entry.kind == Named::kLinks && entry.count == 0;
+    if ((with_links || entry.kind != Named::kLinks) && !is_nothing && name.starts_with(scope_))
       words.push_back(name.substr(scope_.size()));
   }
   return words;

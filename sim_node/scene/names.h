@@ -90,7 +90,8 @@ class Names {
   bool is_before_links(const std::string& name) const noexcept;
   /// True if the name belongs to a part whose description has a problem.
   bool is_in_unsound(const std::string& name) const noexcept;
-  std::vector<std::string> words(bool with_links) const;  ///< for "did you mean"
+  /// For "did you mean": all but links of which there are none.
+  std::vector<std::string> words(bool with_links) const;
 
   /// A MAT or a link as a selection writes it: string[3].
   std::string word_of(std::uint32_t index, bool is_link) const;

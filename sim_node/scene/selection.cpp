@@ -175,6 +175,23 @@ class Picker {
     return found;
   }
 
+  /// A name that may be meant, or those that there are in the part.
+  std::string hint_for(const std::string& name, bool with_links) const {
+    constexpr std::size_t kMaxListed = 20;
+    const std::string hint = config::did_you_mean(name, names_.words(with_links));
+    const std::size_t dot = name.rfind('.');
+    if (!hint.empty() || dot == std::string::npos) return hint;
+    const std::string part = "'" + name.substr(0, dot) + "' has ";
+    std::string list;
+    for (const NameEntry* child : names_.children(name.substr(0, dot))) {
+      const std::size_t commas = static_cast<std::size_t>(std::ranges::count(list, ','));
+      if (commas + 1 == kMaxListed) return list + " ...";
+      list += (list.empty() ? part : ", ") + child->name.substr(child->name.rfind('.') + 1);
+    }
+    const bool is_matter = names_.find(name.substr(0, dot)) != nullptr;
+    return list.empty() && is_matter ? part + "no names in it" : list;
+  }
+
   const NameEntry* find(const std::string& name, bool with_links) {
     const NameEntry* entry = names_.find(name);
     if (entry == nullptr && names_.is_in_unsound(name)) return nullptr;
@@ -182,8 +199,7 @@ class Picker {
       const std::string searched =
           with_links ? "no matter, port or links are named '" : "no matter or port is named '";
       problems_.error(value_.place(), searched + name + "'",
-                      problems_.is_full() ? std::string()
-                                          : config::did_you_mean(name, names_.words(with_links)));
+                      problems_.is_full() ? std::string() : hint_for(name, with_links));
     } else if (entry->kind == Named::kLinks && !with_links) {
       problems_.error(value_.place(), what_ + " must be MATs, and '" + name + "' are links");
       return nullptr;

@@ -110,6 +110,29 @@ std::string states(const std::string& text) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
+    BendingWithoutItsKind, BadLiaisons,
+    testing::Values(
+        BadLiaison{
+            states(
+                "      x: {^stiffness_n_m_per_rad: 1, viscosity_n_m_s_per_rad: 0.1, exits: [{to: "
+                "x, when: abs(bend_rad) > hold_m, rest: rest_rad + 0.1 * bend_rad}]}\n"),
+            "'stiffness_n_m_per_rad' is a key of a bending liaison, and liaison 'l' is none",
+            "write kind: bending in liaison 'l'"},
+        BadLiaison{states("      x: {exits: []}\n      y: {^rest_rad: 0.1}\n"),
+                   "'rest_rad' is a key of a bending liaison, and liaison 'l' is none",
+                   "write kind: bending in liaison 'l'"},
+        BadLiaison{scene_of("  l: {^stiffness_n_m_per_rad: 1}\n"),
+                   "'stiffness_n_m_per_rad' is a key of a bending liaison, and liaison 'l' is none",
+                   "write kind: bending in liaison 'l'"},
+        BadLiaison{scene_of("  l: {kind: spring, ^stiffness_n_m_per_rad: 1}\n"),
+                   "'stiffness_n_m_per_rad' is a key of a bending liaison, and liaison 'l' is none",
+                   "write kind: bending in liaison 'l'"},
+        BadLiaison{
+            scene_of("  l: {kind: spring, stiffness_n_per_m: 1, ^stiffness_n_m_per_rad: 1}\n"),
+            "unknown key 'stiffness_n_m_per_rad' in liaison 'l'",
+            "did you mean 'stiffness_n_per_m'?"}));
+
+INSTANTIATE_TEST_SUITE_P(
     States, BadLiaisons,
     testing::Values(
         BadLiaison{

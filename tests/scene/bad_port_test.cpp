@@ -63,6 +63,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadScene{kLinked,
                  "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^z}\n",
                  "'along' in port 'p': a scene of space 2 has no direction 'z'", ""},
+        BadScene{kHead1, "matter: {m: {kind: plane, at_m: 0, normal: ^y}}\n",
+                 "'normal' in matter 'm': a scene of space 1 has no direction 'y'",
+                 "write x or -x: space 1 has one direction, which is drawn upwards"},
         BadScene{
             kLinked, "ports:\n  p: {device: k, axes: [0], role: mass, at_m: [0, 0], along: ^up}\n",
             "'along' in port 'p' must be 2 numbers [x, y] in a scene of space 2, got 'up'", ""},
@@ -123,6 +126,30 @@ INSTANTIATE_TEST_SUITE_P(
                  "pick one: \"a[0]\", or take: largest, smallest, mean or sum"},
         BadScene{kLinked, "signals:\n  s: {of: ^aa, quantity: position, axis: x}\n",
                  "no matter, port or links are named 'aa'", ""},
+        BadScene{kLinked, "signals:\n  s: {of: [a, b], quantity: speed, take: ^max}\n",
+                 "'take' in signal 's' must be one of largest, smallest, mean, sum, got 'max'",
+                 "did you mean 'largest'?"},
+        BadScene{kLinked, "signals:\n  s: {of: [a, b], quantity: speed, take: ^Average}\n",
+                 "'take' in signal 's' must be one of largest, smallest, mean, sum, got 'Average'",
+                 "did you mean 'mean'?"},
+        BadScene{
+            kHead2,
+            R"(parts: {arm: {matter: {top: {kind: fixed, at_m: [0, 0]}, w: {kind: mass, mass_kg: 1, at_m: [0, 1]}}}}
+matter: {arms: {part: arm, repeat: {count: 2, translate_m: [1, 0]}}}
+signals:
+  s: {of: ^"arms[0].w.lines", quantity: speed, take: mean}
+)",
+            "no matter, port or links are named 'arms[0].w.lines'",
+            "'arms[0].w' has no names in it"},
+        BadScene{
+            kHead2,
+            R"(parts: {arm: {matter: {top: {kind: fixed, at_m: [0, 0]}, w: {kind: mass, mass_kg: 1, at_m: [0, 1]}}}}
+matter: {arms: {part: arm, repeat: {count: 2, translate_m: [1, 0]}}}
+signals:
+  s: {of: ^"arms[0].spring_of_the_clock", quantity: speed, take: mean}
+)",
+            "no matter, port or links are named 'arms[0].spring_of_the_clock'",
+            "'arms[0]' has top, w"},
         BadScene{kLinked, "signals:\n  s: {of: ^\"a.links[0]\", quantity: position}\n",
                  "'a.links' has no links", ""},
         BadScene{

@@ -85,6 +85,39 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadScene{kHead2,
                  R"(liaisons:
+  a: {pulls: false, friction: ^0.5}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "'friction' in liaison 'a' must be a mapping of keys, got '0.5'",
+                 "for example friction: {static: 0.5, stiffness_n_per_m: 3000, "
+                 "viscosity_n_s_per_m: 2}"},
+        BadScene{kHead2,
+                 R"(liaisons:
+  a: {pulls: false, friction: ^{kinetic: 0.1, stiffness_n_per_m: 3}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "missing key 'static' in friction of liaison 'a'",
+                 "for example friction: {static: 0.5, stiffness_n_per_m: 3000, "
+                 "viscosity_n_s_per_m: 2}"},
+        BadScene{kHead2,
+                 R"(liaisons:
+  a: {kind: spring, stiffness_n_per_m: 9, friction: ^{static: 0.1, stiffness_n_per_m: 3}}
+matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
+)",
+                 "a spring has no 'friction'",
+                 "leave 'kind' out: a liaison with friction is a state_machine"},
+        BadScene{kHead2,
+                 R"(liaisons:
+  a: {pulls: false, range: rest, stiffness_n_per_m: 9}
+matter: {m: {kind: mass, ball: {mass_kg: 1, radius_m: 0.1}, at_m: [[0, 0], [1, 0]]}}
+links:
+  - {liaison: a, within: m, friction: ^0.5}
+)",
+                 "a link has no 'friction', its liaison has",
+                 "write in the liaison friction: {static: 0.5, stiffness_n_per_m: 3000, "
+                 "viscosity_n_s_per_m: 2}"},
+        BadScene{kHead2,
+                 R"(liaisons:
   a: {pulls: false, friction: ^{static: 0.1}}
 matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
@@ -154,7 +187,8 @@ matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 matter: {m: {kind: mass, mass_kg: 1, at_m: [0, 0]}}
 )",
                  "'friction' in state 'x' of liaison 'a' must be a mapping of keys, got 'some'",
-                 ""},
+                 "for example friction: {static: 0.5, stiffness_n_per_m: 3000, "
+                 "viscosity_n_s_per_m: 2}"},
         BadScene{kHead1,
                  R"(liaisons:
   r: {pulls: false, friction: {static: 0.1, stiffness_n_per_m: 1}}

@@ -57,8 +57,11 @@ std::optional<Vec3> read_direction(const Value& value, const std::string& what, 
   if (value.kind() == Value::Kind::kScalar) {
     if (const std::optional<Vec3> axis = axis_of_word(value.text())) {
       if (axis->tail(3 - space).isZero(0.0)) return axis;
-      problems.error(value.place(), what + ": a scene of space " + std::to_string(space) +
-                                        " has no direction '" + value.text() + "'");
+      problems.error(
+          value.place(),
+          what + ": a scene of space " + std::to_string(space) + " has no direction '" +
+              value.text() + "'",
+          space == 1 ? "write x or -x: space 1 has one direction, which is drawn upwards" : "");
       return std::nullopt;
     }
   }

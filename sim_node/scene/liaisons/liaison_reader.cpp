@@ -51,6 +51,28 @@ std::string hint_without(const std::string& kind, const std::string& key) {
   return std::string("give it, or write kind: ") + (key == kViscosity ? "spring" : "damper");
 }
 
+/// The first key of bending in one mapping, if none of links stands beside it.
+std::optional<Value::Entry> bending_key_in(const Value& mapping) {
+  constexpr std::array kOfBending{kBendStiffness, kBendViscosity, kBendRest};
+  constexpr std::array kOfLinks{kStiffness,      kViscosity, "elasticity", "dissipation",
+                                "force_limit_n", "pulls",    "pushes",     "friction"};
+  std::optional<Value::Entry> found;
+  for (const Value::Entry& entry : mapping.entries()) {
+    if (std::ranges::find(kOfLinks, entry.key) != kOfLinks.end()) return {};
+    if (!found && std::ranges::find(kOfBending, entry.key) != kOfBending.end()) found = entry;
+  }
+  return found;
+}
+
+/// Likewise of a liaison or, where it has none itself, of its states.
+std::optional<Value::Entry> bending_key_of(const Value& definition) {
+  if (definition.find("parallel").exists()) return {};
+  if (auto own = bending_key_in(definition)) return own;
+  for (const Value::Entry& state : definition.find("states").entries())
+    if (auto found = bending_key_in(state.value)) return found;
+  return {};
+}
+
 /// The definition with overrides in the place of its plain keys.
 Value with_overrides(const Value& definition, const ParameterOverrides& overrides) {
   Value changed = definition;
@@ -78,6 +100,7 @@ class LiaisonReader {
     LinkLaw law;
     const Value definition = with_overrides(written, overrides);
     MappingReader reader(definition, what, problems_);
+    if (!reader.has("kind") && lacks_kind_of_bending(definition, what)) return law;
     std::string kind = kind_by_keys(definition);
     if (kind.empty() || reader.has("kind")) {
       std::vector<std::string> words;
@@ -86,7 +109,9 @@ class LiaisonReader {
                                     "; a liaison with states or a law, as elasticity, needs none");
     }
     reader.optional_value("kind");
-    if (!reader.ok()) return law;
+    if (!reader.ok() || (kind != kBending && lacks_kind_of_bending(definition, what)) ||
+        (kind == "state_machine" && has_plain_friction(definition, what)))
+      return law;
 
     const std::size_t errors_before = problems_.error_count();
     const ParameterValues parameters(reader.optional_value("parameters"), overrides, outer, what,
@@ -113,6 +138,39 @@ class LiaisonReader {
   }
 
  private:
+  /// True, with a problem, if a liaison of another kind is written as one of bending.
+  bool lacks_kind_of_bending(const Value& definition, const std::string& what) {
+    const std::optional<Value::Entry> key = bending_key_of(definition);
+    if (!key) return false;
+    problems_.error(key->key_place,
+                    "'" + key->key + "' is a key of a bending liaison, and " + what + " is none",
+                    "write kind: bending in " + what);
+    return true;
+  }
+
+  /// True, with a problem, if friction is written as a number, in the liaison or a state.
+  bool has_plain_friction(const Value& definition, const std::string& what) {
+    const Value friction = definition.find("friction");
+    if (friction.kind() == Value::Kind::kScalar && friction.text() != "none") {
+      problems_.error(
+          friction.place(),
+          "'friction' in " + what + " must be a mapping of keys, got " + friction.described(),
+          std::string("for example ") + kExampleOfFriction);
+      return true;
+    }
+    const std::vector<Value::Entry>& states = definition.find("states").entries();
+    return std::ranges::any_of(states, [&](const Value::Entry& state) {
+      return has_plain_friction(state.value, "state '" + state.key + "' of " + what);
+    });
+  }
+
+  static void refuse_friction(MappingReader& reader, const std::string& kind) {
+    if (!reader.has("friction")) return;
+    reader.optional_value("friction");
+    reader.error_at("friction", "a " + kind + " has no 'friction'",
+                    "leave 'kind' out: a liaison with friction is a state_machine");
+  }
+
   LinkLaw read_linear(MappingReader& reader, const std::string& kind_name,
                       const ParameterValues& parameters) {
     const LiaisonKind& kind =
@@ -125,6 +183,7 @@ class LiaisonReader {
       reader.optional_value(key);
       if (reader.has(key)) reader.error_at(key, "a " + kind_name + " has no '" + key + "'");
     };
+    refuse_friction(reader, kind_name);
     const Range range = maxwell ? Range::positive() : Range::not_negative();
     const double fallback = maxwell ? 1.0 : 0.0;
     const auto required = [&](const char* key) {
@@ -199,6 +258,7 @@ class LiaisonReader {
     law.kind = LinkKind::kState;
     AskedOutside outside{liaisons_.signals(), law.references};
     const std::size_t errors_before = problems_.error_count();
+    refuse_friction(reader, kind);
     const auto read = [&](const char* key, bool is_its_own, bool is_required) {
       if (!is_its_own) {
         reader.optional_value(key);

@@ -182,7 +182,7 @@ FrictionRead read_friction(config::MappingReader& owner, const engine::Friction&
   if (!value.exists()) return read;
   config::MappingReader reader(value, "friction of " + owner.what(), problems);
   const Range not_negative = Range::not_negative();
-  reader.required_value("static");
+  reader.required_value("static", std::string("for example ") + kExampleOfFriction);
   const ChangingNumber sticking =
       optional_changing(reader, "static", 0.0, not_negative, parameters, outside, problems);
   const ChangingNumber written =
@@ -196,7 +196,7 @@ FrictionRead read_friction(config::MappingReader& owner, const engine::Friction&
           : required_formula(reader, "stiffness_n_per_m", Range::positive(), parameters, problems);
   friction.viscosity = optional_formula(reader, "viscosity_n_s_per_m", before.viscosity,
                                         Range::between(0.0, kMaxViscosity), parameters, problems);
-  const bool are_numbers = !sticking.changes() && !sliding.changes();
+  const bool are_numbers = reader.has("static") && !sticking.changes() && !sliding.changes();
   if (are_numbers && sliding.number > sticking.number) {
     reader.error_at("kinetic", "'kinetic' in " + reader.what() + " must not be above 'static'");
   }

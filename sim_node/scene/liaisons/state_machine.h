@@ -9,6 +9,10 @@
 
 namespace cordis::scene {
 
+/// What friction looks like in a file.
+inline constexpr const char* kExampleOfFriction =
+    "friction: {static: 0.5, stiffness_n_per_m: 3000, viscosity_n_s_per_m: 2}";
+
 /// Where the parts of a state machine stand, and what was said about them beside their physics.
 struct StateMachinePlaces {
   struct State {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 #include "sim_node/scene/language/name.h"
+#include "sim_node/scene/liaisons/state_machine.h"
 #include "sim_node/scene/sections/bends.h"
 #include "sim_node/scene/sections/sets.h"
 
@@ -135,6 +137,11 @@ void read_link(Assembly& assembly, const Value& value) {
                          assembly.problems);
     }
     return;
+  }
+  if (reader.has("friction")) {
+    reader.optional_value("friction");
+    reader.error_at("friction", "a link has no 'friction', its liaison has",
+                    std::string("write in the liaison ") + kExampleOfFriction);
   }
   LinkEntry entry{reader, name, has_name, {}, errors_before};
   entry.law = read_law(reader, LawPlace::kLink, *assembly.liaisons, assembly.scene.space(),
