@@ -108,6 +108,15 @@ msg::SurfaceKind kind_of(const engine::Surface& surface) {
   return msg::SURFACE_INNER_FACE;
 }
 
+/// The other side of a plane that has two.
+msg::SurfaceDescription other_side_of(const msg::SurfaceDescription& plane) {
+  msg::SurfaceDescription side;
+  side.name(plane.name());
+  side.kind(msg::SURFACE_INNER_FACE);
+  side.centre_m(plane.centre_m());
+  return side;
+}
+
 /// In the coordinates of a frame.
 msg::SurfaceDescription surface_of(const scene::Scene& scene, const engine::Surface& surface,
                                    const FrameLayout& layout) {
@@ -223,6 +232,9 @@ msg::SceneDescription describe(const scene::Scene& scene, std::uint64_t epoch,
   }
   for (const engine::Surface& surface : scene.network.surfaces) {
     description.surfaces().push_back(surface_of(scene, surface, layout));
+    description.surface_mat().push_back(surface.mat);
+    if (surface.kind != engine::SurfaceKind::kPlane || !surface.both_sides) continue;
+    description.surfaces().push_back(other_side_of(description.surfaces().back()));
     description.surface_mat().push_back(surface.mat);
   }
   for (const std::size_t set : state_sets_of(scene)) {

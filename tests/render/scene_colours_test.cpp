@@ -166,6 +166,21 @@ TEST(LinkPatterns, AreOfScenesWithSeveralLiaisonsTheMostFrequentSolid) {
     EXPECT_NE(svg.find(name), std::string::npos) << name;
 }
 
+TEST(LinkPatterns, OfALiaisonOfOneStateHaveItsNameAlone) {
+  msg::SceneDescription description = two_copies();
+  msg::StateMachineDescription table = hook();
+  table.name("table");
+  table.states({""});
+  description.state_machines({glue(), table});
+  description.link_state_machine({1, 1, 0, msg::NO_INDEX});
+  const std::string svg = svg_of(description);
+  for (const char* name : {">link, table<", ">glue: sticks<", ">glue: loose<", ">without states<"})
+    EXPECT_NE(svg.find(name), std::string::npos) << name;
+
+  description.link_state_machine({1, 1, 1, 1});
+  EXPECT_NE(svg_of(description).find(">link<"), std::string::npos);
+}
+
 TEST(LinkPatterns, AreOneForALiaisonWhateverItsParameters) {
   msg::SceneDescription description = two_copies();
   description.state_machines({hook(), glue(), glue(), glue()});

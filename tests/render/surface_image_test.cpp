@@ -315,6 +315,40 @@ TEST(SurfaceShape, OfAPlaneThatMovesAlongItselfGoesAlong) {
   }
 }
 
+TEST(SurfaceShape, OfAPlaneWithBothSidesHasTwoFacesNoHatchesAndIsNoBorder) {
+  const Box home{{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
+  const auto wall = test::surface("wall", msg::SURFACE_PLANE, {}, {1.0, 0.0, 0.0}, {});
+  const auto floor =
+      test::surface("floor", msg::SURFACE_PLANE, {0.0, -0.1, 0.0}, {0.0, 1.0, 0.0}, {});
+  Surfaces one = {wall, floor};
+  one[0].centre_m({0.0, 0.0, 0.0});
+  Surfaces both = {one[0], test::surface("wall", msg::SURFACE_INNER_FACE, {0.0, 0.0, 0.0}, {}, {}),
+                   floor};
+
+  const std::vector<SurfaceShape> shapes = shapes_of(both, home, 3);
+  ASSERT_EQ(shapes.size(), 3u);
+  ASSERT_EQ(shapes[0].faces.size(), 2u);
+  EXPECT_EQ(shapes[0].faces[0].normal, (Point{1.0, 0.0, 0.0}));
+  EXPECT_EQ(shapes[0].faces[1].normal, -1.0 * shapes[0].faces[0].normal);
+  EXPECT_EQ(shapes[0].faces[1].corners.front(), shapes[0].faces[0].corners.back());
+  EXPECT_TRUE(shapes[1].faces.empty() && shapes[1].edges.empty());
+  const auto lowest_x = [](const SurfaceShape& shape) {
+    double lowest = 0.0;
+    for (const Point& corner : shape.faces.front().corners) lowest = std::min(lowest, corner[0]);
+    return lowest;
+  };
+  EXPECT_LT(lowest_x(shapes[2]), -0.2) << "the floor goes on behind the wall";
+  EXPECT_EQ(lowest_x(shapes_of(one, home, 3)[1]), 0.0);
+  for (const SurfaceFace& face : shapes[0].faces) {
+    for (const Point& corner : face.corners)
+      EXPECT_GE(corner[1], -0.1 - 1e-12) << "the floor is its border";
+  }
+
+  const std::vector<SurfaceShape> flat = shapes_of(both, home, 2);
+  EXPECT_EQ(flat[0].edges.size(), 1u) << "a line";
+  EXPECT_GT(flat[2].edges.size(), 10u) << "with hatches below";
+}
+
 TEST(SurfaceShape, OfAHollowBodyIsItsInnerSidesBehindAllMatter) {
   const Box home{{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
   const std::vector<double> middle = {0.0, 0.1, 0.0};

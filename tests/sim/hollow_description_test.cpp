@@ -40,5 +40,30 @@ links:
   EXPECT_TRUE(description.surfaces()[6].size_m().empty());
 }
 
+TEST(HollowDescription, NamesTheOtherSideOfAPlaneThatHasTwo) {
+  const auto scene = scene_of(R"(
+cordis: 1
+name: walls
+space: 2
+step: {rate_hz: 1000}
+liaisons:
+  touch: {stiffness_n_per_m: 100, pulls: false, range: rest}
+matter:
+  ball: {kind: mass, at_m: [0, 0], ball: {mass_kg: 0.1, radius_m: 0.01}}
+  floor: {kind: plane, at_m: [0, -1], normal: y}
+  wall: {kind: plane, at_m: [1, 0], normal: x, sides: both}
+links:
+  - {liaison: touch, between_sets: [ball, [floor, wall]], rest: radii}
+)");
+  const msg::SceneDescription description = describe(*scene, 1, 1);
+
+  ASSERT_EQ(description.surfaces().size(), 3u);
+  EXPECT_EQ(description.surfaces()[0].kind(), msg::SURFACE_PLANE);
+  EXPECT_EQ(description.surfaces()[1].kind(), msg::SURFACE_PLANE);
+  EXPECT_EQ(description.surfaces()[2].kind(), msg::SURFACE_INNER_FACE);
+  EXPECT_EQ(description.surfaces()[2].name(), "wall");
+  EXPECT_EQ(description.surface_mat(), (std::vector<std::uint32_t>{1, 2, 2}));
+}
+
 }  // namespace
 }  // namespace cordis::sim

@@ -51,6 +51,12 @@ Sign sign_of(MatterMark mark) noexcept {
 /// Names by look: a pattern, and the number of a colour.
 using NamesByLook = std::map<std::pair<LinePattern, std::size_t>, std::vector<std::string>>;
 
+/// A state with its liaison before it; the liaison alone if its only state has no name.
+std::string name_of_state(const std::string& liaison, const std::string& state) {
+  if (liaison.empty() || state.empty()) return liaison + state;
+  return liaison + ": " + state;
+}
+
 /// One entry for each look. @param what  before the first
 void add_looks(const NamesByLook& looks, const std::string& what,
                const std::vector<Colour>& colours, std::vector<Entry>& entries) {
@@ -72,9 +78,10 @@ void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
   const std::vector<LinkGroup>& groups = painter.link_groups();
   NamesByLook links;
   for (const LinkGroup& group : groups) {
-    const std::string liaison = groups.size() > 1 ? group.name + ": " : "";
+    const std::string liaison = groups.size() > 1 ? group.name : "";
     for (std::size_t state = 0; state < group.states.size(); ++state)
-      links[{group.pattern, state % colours.size()}].push_back(liaison + group.states[state]);
+      links[{group.pattern, state % colours.size()}].push_back(
+          name_of_state(liaison, group.states[state]));
     if (group.states.empty())
       links[{group.pattern, 0}].emplace_back(groups.size() > 1 ? "without states" : "");
   }
@@ -82,8 +89,8 @@ void add_links(const ScenePainter& painter, std::vector<Entry>& entries) {
   NamesByLook bonds;
   for (const LinkGroup& group : painter.bond_groups()) {
     for (const std::size_t state : group.bond_states)
-      bonds[{group.pattern, state % colours.size()}].push_back(group.name + ": " +
-                                                               group.states[state]);
+      bonds[{group.pattern, state % colours.size()}].push_back(
+          name_of_state(group.name, group.states[state]));
   }
   add_looks(bonds, "bond of sets", colours, entries);
 }

@@ -43,19 +43,23 @@ Point across(const Point& axis) noexcept {
   return normalized(along - dot(along, axis) * axis);
 }
 
-/// The side of a plane that matter can be on.
+/// The side of a plane that matter can be on, or both.
 struct HalfSpace {
   Point foot;
   Point normal;
+  bool has_both_sides = false;
 
   double height(const Point& point) const noexcept { return dot(point - foot, normal); }
 };
 
 std::vector<HalfSpace> half_spaces_of(const std::vector<Surface>& surfaces) {
   std::vector<HalfSpace> planes;
-  for (const Surface& surface : surfaces) {
-    if (surface.kind() == msg::SURFACE_PLANE)
-      planes.push_back({point_of(surface.centre_m()), point_of(surface.axis())});
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].kind() != msg::SURFACE_PLANE) continue;
+    const bool has_both_sides =
+        i + 1 < surfaces.size() && surfaces[i + 1].kind() == msg::SURFACE_INNER_FACE;
+    planes.push_back(
+        {point_of(surfaces[i].centre_m()), point_of(surfaces[i].axis()), has_both_sides});
   }
   return planes;
 }
@@ -74,21 +78,21 @@ std::vector<Point> clipped(const std::vector<Point>& corners, const HalfSpace& s
   return kept;
 }
 
-/// Takes a shape and leaves what is on the outer side of every plane but its own.
+/// Takes a shape and leaves what is on the outer side of every plane with one side but its own.
 class PlaneCutter {
  public:
   explicit PlaneCutter(std::vector<HalfSpace> planes) : planes_(std::move(planes)) {}
 
   void add_face(SurfaceShape& shape, std::size_t own, SurfaceFace face) const {
     for (std::size_t i = 0; i < planes_.size(); ++i) {
-      if (!is_own(own, i)) face.corners = clipped(face.corners, planes_[i]);
+      if (cuts(i, own)) face.corners = clipped(face.corners, planes_[i]);
     }
     if (face.corners.size() >= 3) shape.faces.push_back(std::move(face));
   }
 
   void add_line(SurfaceShape& shape, std::size_t own, Point from, Point to) const {
     for (std::size_t i = 0; i < planes_.size(); ++i) {
-      if (is_own(own, i)) continue;
+      if (!cuts(i, own)) continue;
       const double begins = planes_[i].height(from);
       const double ends = planes_[i].height(to);
       if (begins < 0.0 && ends < 0.0) return;
@@ -100,9 +104,10 @@ class PlaneCutter {
   }
 
  private:
-  /// True of the plane itself, and of one that faces the same way: it is no border.
-  bool is_own(std::size_t own, std::size_t other) const noexcept {
-    return own == other || dot(planes_[own].normal, planes_[other].normal) > 1.0 - 1e-9;
+  /// False for the plane itself, one with both sides, and one that faces the same way: it is no border.
+  bool cuts(std::size_t other, std::size_t own) const noexcept {
+    return own != other && !planes_[other].has_both_sides &&
+           dot(planes_[own].normal, planes_[other].normal) <= 1.0 - 1e-9;
   }
 
   std::vector<HalfSpace> planes_;
@@ -157,6 +162,12 @@ SurfaceShape plane_of(const PlaneCutter& cutter, std::size_t own, const HalfSpac
                   {{place_at(spread_u.low, spread_v.low), place_at(spread_u.high, spread_v.low),
                     place_at(spread_u.high, spread_v.high), place_at(spread_u.low, spread_v.high)},
                    plane.normal});
+  if (plane.has_both_sides && !shape.faces.empty()) {
+    SurfaceFace other = shape.faces.front();
+    std::ranges::reverse(other.corners);
+    other.normal = -1.0 * other.normal;
+    shape.faces.push_back(std::move(other));
+  }
   for (const double place : grid_places(spread_u, dot(plane.foot, u), cell))
     cutter.add_line(shape, own, place_at(place, spread_v.low), place_at(place, spread_v.high));
   for (const double place : grid_places(spread_v, dot(plane.foot, v), cell))
@@ -164,8 +175,8 @@ SurfaceShape plane_of(const PlaneCutter& cutter, std::size_t own, const HalfSpac
   return shape;
 }
 
-/// A line far past the view, with short lines on the side where matter cannot be. They go along with
-/// the plane.
+/// A line far past the view, with short lines on the side where matter cannot be, if there is one. They go
+/// along with the plane.
 SurfaceShape line_of(const PlaneCutter& cutter, std::size_t own, const HalfSpace& plane,
                      const Box& home, double level) {
   const Point along{-plane.normal[1], plane.normal[0], 0.0};
@@ -177,7 +188,7 @@ SurfaceShape line_of(const PlaneCutter& cutter, std::size_t own, const HalfSpace
   SurfaceShape shape;
   cutter.add_line(shape, own, foot - kFlatRoom * reach_out * along,
                   foot + kFlatRoom * reach_out * along);
-  if (shape.edges.empty()) return shape;
+  if (shape.edges.empty() || plane.has_both_sides) return shape;
   const SurfaceEdge whole = shape.edges.front();
   const Point hatch = (-kHatchLength * cell) * normalized(plane.normal + along);
   const double length = dot(whole.to - whole.from, along);

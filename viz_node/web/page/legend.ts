@@ -69,14 +69,17 @@ function surfaceText(surfaces: Surface[]): string {
   return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MAX_SURFACES).join(', ')}${more}`;
 }
 
+/** A state with its liaison before it; the liaison alone if its only state has no name. */
+const stateName = (liaison: string, state: string): string => (liaison === '' || state === '' ? liaison + state : `${liaison}: ${state}`);
+
 /** A colour for each state, a pattern for each liaison where there are several. States that look the same share an entry. */
 function linkEntries({ groups: { list }, bonds }: SceneView, colours: string[]): LegendEntry[] {
   const links = list.flatMap(({ name, states, pattern }) => {
-    const liaison = list.length > 1 ? `${name}: ` : '';
-    const textOf = (state: string) => (state !== '' ? liaison + state : list.length > 1 ? 'without states' : '');
-    return (states.length === 0 ? [''] : states).map((state, number) => ({ pattern, number, text: textOf(state) }));
+    const liaison = list.length > 1 ? name : '';
+    if (states.length === 0) return [{ pattern, number: 0, text: list.length > 1 ? 'without states' : '' }];
+    return states.map((state, number) => ({ pattern, number, text: stateName(liaison, state) }));
   });
-  const ofBonds = bonds.groups.list.flatMap(({ name, states, shown, pattern }) => shown.map((number) => ({ pattern, number, text: `${name}: ${states[number]}` })));
+  const ofBonds = bonds.groups.list.flatMap(({ name, states, shown, pattern }) => shown.map((number) => ({ pattern, number, text: stateName(name, states[number]!) })));
   const cut = bonds.isCut ? ` (the first ${count(MAX_BONDS)} of all)` : '';
   const entries = [...entriesOf(links, 'link', colours), ...entriesOf(ofBonds, `bond of sets${cut}`, colours)];
   if (entries.length > MAX_LINKS) entries[MAX_LINKS - 1]!.text += ' …';

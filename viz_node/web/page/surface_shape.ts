@@ -49,12 +49,14 @@ function across(axis: Vector3): Vector3 {
   return along.addScaledVector(axis, -along.dot(axis)).normalize();
 }
 
-/** The side of a plane that matter can be on. */
+/** The side of a plane that matter can be on, or both. */
 class HalfSpace {
   readonly at: Vector3;
   readonly normal: Vector3;
+  readonly hasBothSides: boolean;
 
-  constructor({ centre, axis }: Surface) {
+  constructor({ centre, axis }: Surface, next: Surface | undefined) {
+    this.hasBothSides = next?.kind === 'inner_face';
     this.at = vectorOf(centre);
     this.normal = vectorOf(axis);
   }
@@ -82,16 +84,16 @@ class HalfSpace {
   }
 }
 
-/** The shapes of surfaces around a scene in `home`. A plane ends where another one is. */
+/** The shapes of surfaces around a scene in `home`. A plane ends where another one with one side is. */
 export function shapesOf(surfaces: Surface[], home: Box3, space: number): SurfaceShape[] {
-  const planes = surfaces.map((surface) => (surface.kind === 'plane' ? new HalfSpace(surface) : null));
+  const planes = surfaces.map((surface, i) => (surface.kind === 'plane' ? new HalfSpace(surface, surfaces[i + 1]) : null));
   const size = sizeOf(home);
   const level = home.min.z - 0.0005 * Math.max(size.x, size.y, 1e-6); // of sections: between the grid and all matter
   return surfaces.map((surface, i) => {
     const plane = planes[i] ?? null;
     if (plane !== null) {
       // One that faces the same way is no border.
-      const borders = planes.filter((other) => other !== null && other !== plane && other.normal.dot(plane.normal) <= 1 - 1e-9) as HalfSpace[];
+      const borders = planes.filter((other) => other !== null && other !== plane && !other.hasBothSides && other.normal.dot(plane.normal) <= 1 - 1e-9) as HalfSpace[];
       return space < 3 ? lineOf(plane, borders, home, level) : planeOf(plane, borders, home);
     }
     if (surface.kind === 'segment') {
@@ -106,12 +108,15 @@ export function shapesOf(surfaces: Surface[], home: Box3, space: number): Surfac
   });
 }
 
+/** A face as seen from its other side. */
+const turned = ({ corners, normal }: SurfaceFace): SurfaceFace => ({ corners: [...corners].reverse(), normal: normal.clone().negate() });
+
 const isBox = ({ kind }: Surface): boolean => kind === 'box' || kind === 'hollow_box';
 
 /** The inner sides of a body: a viewer sees those behind what is inside, past the ones before it. Of a section the outline. */
 function hollowOf({ faces, edges }: SurfaceShape, space: number): SurfaceShape {
   if (space < 3) return { faces: [], edges };
-  return { faces: faces.map(({ corners, normal }) => ({ corners: [...corners].reverse(), normal: normal.clone().negate() })), edges };
+  return { faces: faces.map(turned), edges };
 }
 
 /** The box around `matter` and the surfaces. What is unbounded counts by its nearest place, where that is near. */
@@ -173,7 +178,9 @@ function planeOf(plane: HalfSpace, borders: HalfSpace[], home: Box3): SurfaceSha
   ];
   const square = [placeAt(us.low, vs.low), placeAt(us.high, vs.low), placeAt(us.high, vs.high), placeAt(us.low, vs.high)];
   const corners = borders.reduce((left, border) => border.clipFace(left), square);
-  return { faces: corners.length < 3 ? [] : [{ corners, normal: plane.normal }], edges: clippedLines(lines, borders) };
+  const face: SurfaceFace = { corners, normal: plane.normal };
+  const faces = plane.hasBothSides ? [face, turned(face)] : [face];
+  return { faces: corners.length < 3 ? [] : faces, edges: clippedLines(lines, borders) };
 }
 
 /** What is left of `place` over whole cells, 0 or more. */
@@ -190,7 +197,7 @@ function gridPlaces({ low, high }: Span, origin: number, cell: number): number[]
 const clippedLines = (lines: [Vector3, Vector3][], borders: HalfSpace[]): [Vector3, Vector3][] =>
   borders.reduce((left, border) => left.flatMap((line) => border.clipLine(line)), lines);
 
-/** A line far past the view, with short lines on the side where matter cannot be. They go along with the plane. */
+/** A line far past the view, with short lines on the side where matter cannot be, if there is one. They go along with the plane. */
 function lineOf(plane: HalfSpace, borders: HalfSpace[], home: Box3, level: number): SurfaceShape {
   const along = new Vector3(-plane.normal.y, plane.normal.x, 0);
   const size = sizeOf(home);
@@ -200,6 +207,7 @@ function lineOf(plane: HalfSpace, borders: HalfSpace[], home: Box3, level: numbe
   const foot = middle.clone().addScaledVector(plane.normal, -plane.height(middle)).setZ(level);
   const whole: [Vector3, Vector3] = [foot.clone().addScaledVector(along, -FLAT_ROOM * reach), foot.clone().addScaledVector(along, FLAT_ROOM * reach)];
   const edges = clippedLines([whole], borders);
+  if (plane.hasBothSides) return { faces: [], edges };
   const hatch = plane.normal.clone().add(along).normalize().multiplyScalar(-HATCH_LENGTH * cell);
   for (const [from, to] of [...edges]) {
     const first = withinCell(plane.at.clone().sub(from).dot(along) + 0.5 * cell, cell);
