@@ -49,7 +49,10 @@ class SceneWriter {
         asking_(seed ^ 0x9b05688cU),
         links_asked_(seed ^ 0x1f83d9abU),
         obstacles_(seed ^ 0x5be0cd19U),
-        shots_(seed ^ 0x367cd507U) {
+        shots_(seed ^ 0x367cd507U),
+        nets_(seed ^ 0x3070dd17U),
+        beside_(seed ^ 0xf70e5939U),
+        counts_(seed ^ 0xffc00b31U) {
     space_ = 1 + static_cast<int>(below(3));
     const std::uint32_t kind = below(16);
     matter_ = kind == 0 ? Matter::kModes : kind <= 2 ? Matter::kPotentials : Matter::kAnything;
@@ -77,6 +80,9 @@ class SceneWriter {
     if (matter_ == Matter::kAnything && !freezes_) perhaps_add_shot();
     if (matter_ != Matter::kModes) perhaps_add_body();
     if (space_ > 1) perhaps_add_shell();
+    if (space_ > 1) perhaps_add_net();
+    if (matter_ != Matter::kModes) perhaps_add_parallel();
+    perhaps_count();
     if (matter_ != Matter::kPotentials) perhaps_lead_a_mass();
     RandomParts added;
     if (matter_ != Matter::kModes) added = random_parts(seed_, space_, laws_of_parts());
@@ -1290,6 +1296,76 @@ step: {{rate_hz: {}, integrator: {}{}}}
     }
   }
 
+  /// Stiffness and perhaps viscosity of links of a net. @param prefix  of the keys
+  std::string springs_of_net(const std::string& prefix) {
+    std::string text =
+        fmt::format(", {}stiffness_n_per_m: {:.4g}", prefix, nets_.decades(5.0, 2000.0));
+    const double viscosity = nets_.decades(1e-4, 0.5);
+    if (matter_ == Matter::kAnything && nets_.chance(0.6))
+      text += fmt::format(", {}viscosity_n_s_per_m: {:.4g}", prefix, viscosity);
+    return text;
+  }
+
+  /// In one scene of fifteen a net, held at its border or not, with links across its cells.
+  void perhaps_add_net() {
+    if (!nets_.chance(1.0 / 15.0)) return;
+    const char* const border = nets_.one_of<const char*>({"free", "fixed", "corners"});
+    const char* const plane = nets_.one_of<const char*>({"xy", "xz", "yz"});
+    const std::uint32_t columns = 3 + nets_.below(2);
+    const double spacing = nets_.between(0.02, 0.06);
+    const double x = nets_.between(-0.2, 0.1);
+    const double mass = nets_.decades(0.001, 0.05);
+    const std::string along = springs_of_net("");
+    const std::string across = springs_of_net("shear_");
+    masses_ += fmt::format(
+        "  net: {{kind: grid, rows: 3, columns: {}, corner_m: [{:.4g}, 0.25{}, spacing_m: {:.4g}, "
+        "border: {}, mass_kg: {:.4g}{}{}}}\n",
+        columns, x, space_ == 3 ? fmt::format(", 0.05], plane: {}", plane) : "]", spacing, border,
+        mass, along, across);
+    liaisons_ +=
+        fmt::format("  of_net: {{kind: state_machine, stiffness_n_per_m: {:.4g}, pulls: false}}\n",
+                    nets_.decades(5.0, 1000.0));
+    links_ += "  - {liaison: of_net, between: [\"p[0]\", \"net[4]\"], rest_m: 0.05}\n";
+  }
+
+  /// In one scene of twelve the first mass hangs on the wall by two or three liaisons beside each other.
+  void perhaps_add_parallel() {
+    if (!beside_.chance(1.0 / 12.0)) return;
+    const bool may_damp = matter_ == Matter::kAnything;
+    std::string parts =
+        fmt::format("{{kind: spring, stiffness_n_per_m: {:.4g}}}", beside_.decades(1.0, 500.0));
+    const std::uint32_t kind = beside_.below(may_damp ? 3 : 1);
+    const double stiffness = beside_.decades(1.0, 500.0);
+    const double viscosity = beside_.decades(1e-3, 1.0);
+    if (kind == 1)
+      parts += fmt::format(", {{kind: damper, viscosity_n_s_per_m: {:.4g}}}", viscosity);
+    if (kind == 2 && !freezes_) {
+      parts +=
+          fmt::format(", {{kind: maxwell, stiffness_n_per_m: {:.4g}, viscosity_n_s_per_m: {:.4g}}}",
+                      stiffness, viscosity);
+    }
+    parts += fmt::format(", {{stiffness_n_per_m: {:.4g}, pulls: false}}", stiffness);
+    liaisons_ += "  beside: {parallel: [" + parts + "]}\n";
+    links_ += "  - {liaison: beside, between: [wall, \"p[0]\"]}\n";
+  }
+
+  /// In an eighth of the scenes signals of a whole: pieces of what is near, and a momentum about a point.
+  void perhaps_count() {
+    if (!counts_.chance(0.125)) return;
+    signals_ += fmt::format("  lumps: {{of: p, quantity: pieces, near_m: {:.4g}}}\n",
+                            counts_.decades(0.01, 0.3));
+    if (space_ == 1) return;
+    const double x = counts_.between(-0.3, 0.3);
+    signals_ += space_ == 2 ? fmt::format(
+                                  "  turned: {{of: p, quantity: angular_momentum, about_m: "
+                                  "[{:.4g}, 0.1]}}\n",
+                                  x)
+                            : fmt::format(
+                                  "  turned: {{of: p, quantity: angular_momentum, about_m: "
+                                  "[{:.4g}, 0.1, 0], axis: y}}\n",
+                                  x);
+  }
+
   void add_set() {
     std::string law;
     if (matter_ == Matter::kPotentials) {
@@ -1544,6 +1620,9 @@ step: {{rate_hz: {}, integrator: {}{}}}
   RandomNumbers links_asked_;  // by conditions
   RandomNumbers obstacles_;
   RandomNumbers shots_;
+  RandomNumbers nets_;
+  RandomNumbers beside_;  // liaisons in parallel
+  RandomNumbers counts_;  // signals of a whole
   bool freezes_ = false;
   bool may_rub_ = false;
   bool has_no_medium_ = false;  // its masses
