@@ -15,13 +15,13 @@ const ROUNDING = 2 ** -23; // of a float32
 async function modules() {
   const { build } = need('esbuild');
   const folder = mkdtempSync(join(tmpdir(), 'cordis-parts-'));
-  const names = ['net_forces', 'colouring', 'format', 'colours', 'keyboards', 'key_marks', 'link_groups', 'refusal', 'signal_store', 'slow_motion', 'stale_reply'];
+  const names = ['net_forces', 'colouring', 'format', 'colours', 'keyboards', 'key_marks', 'link_groups', 'refusal', 'signal_store', 'slow_motion', 'stale_reply', 'surface_shape'];
   await build({ entryPoints: names.map((name) => join(web, 'page', `${name}.ts`)), outdir: folder, bundle: true, format: 'esm', outExtension: { '.js': '.mjs' } });
   const loaded = await Promise.all(names.map((name) => import(pathToFileURL(join(folder, `${name}.mjs`)))));
   rmSync(folder, { recursive: true });
   return Object.assign({}, ...loaded);
 }
-const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, refusalOf, isStale, timeScaleOf, percentOf, withUnit, joined } = await modules();
+const { NetForces, contrast, readable, keyboardsOf, depthOf, halfWidthOf, LinkGroups, BondGroups, SignalStore, canBeSlowed, refusalOf, isStale, timeScaleOf, shapesOf, stateName, percentOf, withUnit, joined } = await modules();
 const palettes = JSON.parse(readFileSync(join(source, 'viz_node/colours.json'), 'utf8'));
 
 /** Two times of a frame to the next, as frames come, with some left out. */
@@ -229,6 +229,29 @@ const cases = {
       ['hook', 2, [1, 2, 0]],
     ]);
     assert.deepEqual([0, 1, 2, 3, 4, 5].map((set) => groups.patternOf(set)), [0, 1, 2, 1, 2, 2]);
+  },
+
+  'a liaison whose only state has no name is called by its own': () => {
+    assert.deepEqual([stateName('glue', 'stuck'), stateName('table', ''), stateName('', 'stuck')], ['glue: stuck', 'table', 'stuck']);
+  },
+
+  'a plane with both sides has two faces, or a line without hatches, and no other surface ends there': () => {
+    const { Box3, Vector3 } = need('three');
+    const home = new Box3(new Vector3(-0.2, -0.2, -0.2), new Vector3(0.2, 0.2, 0.2));
+    const plane = (name, centre, axis) => ({ name, mat: 0, kind: 'plane', centre, axis, size: [] });
+    const floor = plane('floor', [0, -0.1, 0], [0, 1, 0]);
+    const wall = plane('wall', [0, 0, 0], [1, 0, 0]);
+    const both = [wall, { ...wall, kind: 'inner_face', axis: [] }, floor];
+    const [two, none, ground] = shapesOf(both, home, 3);
+    assert.deepEqual(two.faces.map(({ normal }) => normal.x), [1, -1]);
+    assert.deepEqual(two.faces[1].corners.map(({ z }) => z), two.faces[0].corners.map(({ z }) => z).reverse());
+    assert.equal(none.faces.length + none.edges.length, 0);
+    assert.ok(Math.min(...ground.faces[0].corners.map(({ x }) => x)) < -0.2, 'the floor goes on behind the wall');
+    const cut = shapesOf([wall, floor], home, 3)[1];
+    assert.equal(Math.min(...cut.faces[0].corners.map(({ x }) => x)), 0);
+    const flat = shapesOf(both, home, 2);
+    assert.equal(flat[0].edges.length, 1);
+    assert.ok(flat[2].edges.length > 10, 'with hatches');
   },
 
   'a share is read again from its percent, to two digits': () => {

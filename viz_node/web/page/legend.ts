@@ -4,7 +4,7 @@ import { ofList, readable, type Palette } from './colours.ts';
 import { count } from './format.ts';
 import type { Colouring } from './colouring.ts';
 import { SMALLER } from './components.ts';
-import { PATTERNS } from './link_groups.ts';
+import { PATTERNS, stateName } from './link_groups.ts';
 import type { Description, Surface } from './protocol.ts';
 import { fillRows, setText } from './rows.ts';
 import type { SceneView } from './scene_view.ts';
@@ -68,9 +68,6 @@ function surfaceText(surfaces: Surface[]): string {
   const more = names.length > MAX_SURFACES ? ' …' : '';
   return names.length === 0 ? 'surface' : `surface: ${names.slice(0, MAX_SURFACES).join(', ')}${more}`;
 }
-
-/** A state with its liaison before it; the liaison alone if its only state has no name. */
-const stateName = (liaison: string, state: string): string => (liaison === '' || state === '' ? liaison + state : `${liaison}: ${state}`);
 
 /** A colour for each state, a pattern for each liaison where there are several. States that look the same share an entry. */
 function linkEntries({ groups: { list }, bonds }: SceneView, colours: string[]): LegendEntry[] {

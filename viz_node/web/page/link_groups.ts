@@ -2,6 +2,9 @@
 // colour for each state, and where several liaisons are drawn a line pattern for each of them.
 import { NO_STATE_MACHINE, type Description, type Topology } from './protocol.ts';
 
+/** A state with its liaison before it; the liaison alone if its only state has no name. */
+export const stateName = (liaison: string, state: string): string => (liaison === '' || state === '' ? liaison + state : `${liaison}: ${state}`);
+
 export const PATTERNS = ['solid', 'dashed', 'dotted'] as const;
 
 /** Links of one liaison with states, whatever their parameters, or those without. */

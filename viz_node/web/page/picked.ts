@@ -2,6 +2,7 @@
 import type { Palette } from './colours.ts';
 import { percentOf } from './colouring.ts';
 import { count, joined, withUnit } from './format.ts';
+import { stateName } from './link_groups.ts';
 import type { Marks, Point } from './marks.ts';
 import { drawForce } from './port_arrows.ts';
 import { press, setText } from './rows.ts';
@@ -179,6 +180,6 @@ function stateText(view: SceneView, link: number): string {
   const { list } = view.groups;
   const { name, states } = view.groups.of(link);
   if (states.length === 0) return state >= LINK_IS_IDLE ? 'does nothing' : '';
-  const text = (states[state & ~LINK_IS_IDLE] ?? '') + (state >= LINK_IS_IDLE ? ', does nothing' : '');
-  return list.length > 1 ? `${name}: ${text}` : text;
+  const named = stateName(list.length > 1 ? name : '', states[state & ~LINK_IS_IDLE] ?? '');
+  return [named, state >= LINK_IS_IDLE ? 'does nothing' : ''].filter((text) => text !== '').join(', ');
 }
