@@ -2,6 +2,7 @@
 #include "sim_node/plan/settle.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -191,6 +192,7 @@ class Rest {
     } else if (world_) {
       place_at(world_->positions());
     }
+    look_for_circle();
     world_.emplace(std::make_shared<const engine::Network>(network_));
     step();
   }
@@ -208,8 +210,26 @@ class Rest {
     return is_finite_;
   }
 
-  /// True if what pulls moves no position by as much as its rounding. Precondition: hold() was last.
-  bool stands_still() { return !has_moved() && step() && !has_moved(); }
+  /// True if all is held as it was before: what comes then repeats without an end.
+  bool repeats() const noexcept { return repeats_; }
+
+  /// So many steps from rest move no position at all [steps]: what they add up to is rounded away.
+  double still_steps() const {
+    constexpr double kHalf = 0.25 * std::numeric_limits<double>::epsilon();  // of the last digit
+    double least = std::numeric_limits<double>::infinity();
+    const std::vector<Vec3> driven = loads_of(network_);
+    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
+      const engine::Mat& mat = network_.mats[i];
+      if (mat.kind != MatKind::kMass) continue;
+      const Vec3 load = mat.mass * network_.gravity_on(mat) + driven[i];
+      const Vec3 way = network_.step * network_.step / mat.mass * (world_->link_force(i) + load);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (way[axis] != 0.0)
+          least = std::min(least, kHalf * std::abs(mat.position[axis] / way[axis]));
+      }
+    }
+    return least;
+  }
 
   /// Twice that [J].
   double kinetic_energy() const {
@@ -247,20 +267,35 @@ class Rest {
   std::uint64_t steps() const noexcept { return steps_; }
 
  private:
-  bool has_moved() const {
-    const auto positions = world_->positions();
-    for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
-      if (positions.col(i).head<3>() != network_.mats[i].position) return true;
-    }
-    return false;
-  }
-
   static constexpr double kHeldShare = 1e-3;  // of the load of a mass that does not fall
 
   void place_at(const Eigen::Ref<const Eigen::Matrix4Xd>& positions) {
     for (std::uint32_t i = 0; i < network_.mats.size(); ++i) {
       network_.mats[i].position = positions.col(i).head<3>();
     }
+  }
+
+  bool is_as(const NetworkDescription& other) const {
+    const auto is_at = [](const engine::Mat& a, const engine::Mat& b) {
+      return a.position == b.position;
+    };
+    const auto has_stretches = [](const engine::SetLiaison& a, const engine::SetLiaison& b) {
+      return std::ranges::equal(
+          a.stretches, b.stretches,
+          [](const engine::StartStretch& one, const engine::StartStretch& two) {
+            return one.member_a == two.member_a && one.member_b == two.member_b &&
+                   one.stretch == two.stretch && one.slides == two.slides;
+          });
+    };
+    return network_.step == other.step && std::ranges::equal(network_.mats, other.mats, is_at) &&
+           std::ranges::equal(network_.sets, other.sets, has_stretches);
+  }
+
+  /// Compares it with how it was at the last of the holds 1, 2, 4, 8 and so on, as Brent finds circles.
+  void look_for_circle() {
+    ++holds_;
+    repeats_ = holds_ > 1 && is_as(held_);
+    if (std::has_single_bit(holds_)) held_ = network_;
   }
 
   void keep_friction() {
@@ -280,6 +315,9 @@ class Rest {
 
   NetworkDescription network_;
   bool has_friction_;
+  NetworkDescription held_;  // as it was at one of the holds
+  std::uint64_t holds_ = 0;
+  bool repeats_ = false;
   Eigen::Matrix4Xd before_;  // positions with the forces and the friction of the last step [m]
   std::vector<std::optional<std::uint32_t>> slides_on_;  // each, as it was held
   std::optional<engine::World> world_;
@@ -330,13 +368,11 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
   constexpr int kMaxHolds = 200;      // without less force; what still falls takes below 40
   constexpr double kLess = 0.99;      // of the least so far
   constexpr double kRounding = 1e-8;  // of the largest so far
-  constexpr int kMaxStillHolds = 2;   // in which friction may still change
   Rest rest(network, asked.has_friction);
   double largest = 0.0;
   double least = std::numeric_limits<double>::infinity();
   double smallest_halfway = 0.0;
   int holds = 0;
-  int still_holds = 0;  // one after the other
   Pace pace(network.step);
   for (;;) {
     const std::uint64_t steps_before = rest.steps();
@@ -351,14 +387,15 @@ Settled try_to_settle(const NetworkDescription& network, const Settling& asked) 
       least = pose.force;
       holds = 0;
     }
-    pose.is_rounding = holds > kMaxHolds && pose.force < kRounding * largest;
-    if (!pose.is_rounding && rest.stands_still()) {
-      pose.is_rounding = !pace.lengthens() && ++still_holds > kMaxStillHolds;
+    const bool never_moves =
+        rest.still_steps() > static_cast<double>(asked.max_steps - rest.steps());
+    if (never_moves && pace.lengthens()) {
       rest.set_step(pace.step());
-      if (!pose.is_rounding) continue;
+      continue;
     }
+    const bool ends_nowhere = holds > kMaxHolds || rest.repeats();
+    pose.is_rounding = never_moves || (ends_nowhere && pose.force < kRounding * largest);
     if (pose.is_rounding) return pose;
-    still_holds = 0;
     double before = 0.0;
     for (double now = rest.kinetic_energy(); now >= before && rest.steps() < asked.max_steps;
          now = rest.kinetic_energy()) {

@@ -190,6 +190,17 @@ TEST(Settling, EndsWhereRoundingStopsAllMotion) {
   }
 }
 
+TEST(Settling, ComesAsNearToRestAsRoundingLets) {
+  for (const char* const until : {"1.0e-10", "1.0e-11"}) {
+    config::Problems problems;
+    const scene::Scene scene =
+        scene_at_rest(ball_on_a_plane(std::string("settle: {until_n: ") + until + "}"), problems);
+    EXPECT_EQ(problems.text(), "");
+    ASSERT_TRUE(scene.settled);
+    EXPECT_LT(scene.settled->steps, 20'000u) << until;
+  }
+}
+
 TEST(Settling, SaysThatNothingHoldsWhatFalls) {
   config::Problems problems;
   scene_at_rest(R"(cordis: 1
