@@ -37,8 +37,8 @@ namespace cordis::engine {
 ///
 /// Where the first set is surfaces, a pair is a ball and its nearest point of the surface: the distance
 /// has the sign of SurfaceDistance, and the line of centres is the normal. What is far from all
-/// surfaces is compared with its free way once a step, and costs nothing else. Nor do surfaces that stand still. Balls on planes that stand
-/// still take one pass where PlaneContacts can take it.
+/// surfaces is compared with its free way once a step, and costs nothing else. Fixed surfaces far from all
+/// balls cost nothing. Balls on planes that do not move take one pass where PlaneContacts can take it.
 ///
 /// The forces are summed in a fixed order: rows of P in the order given, and in each its partners
 /// in range in the order given, by their place in batches of 8. So the sum is the same bits for
