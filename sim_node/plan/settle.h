@@ -28,7 +28,7 @@ struct Settled {
   std::optional<std::uint32_t> slides_on;  ///< what the pulled mass slides on, if it does
   bool falls = false;                      ///< next to nothing but its load pulls the pulled mass
   bool is_finite = true;                   ///< false: it diverged; the rest says nothing then
-  bool is_rounding = false;  ///< what pulls falls no more, and is rounding
+  bool is_rounding = false;                ///< what pulls falls no more, and is rounding
 };
 
 /// True if the law of a state of the start or a driven force asks for a variable other than the time: then no pose

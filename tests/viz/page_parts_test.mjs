@@ -247,8 +247,8 @@ const cases = {
     assert.deepEqual(two.faces[1].corners.map(({ z }) => z), two.faces[0].corners.map(({ z }) => z).reverse());
     assert.equal(none.faces.length + none.edges.length, 0);
     assert.ok(Math.min(...ground.faces[0].corners.map(({ x }) => x)) < -0.2, 'the floor goes on behind the wall');
-    const cut = shapesOf([wall, floor], home, 3)[1];
-    assert.equal(Math.min(...cut.faces[0].corners.map(({ x }) => x)), 0);
+    const bounded = shapesOf([wall, floor], home, 3)[1];
+    assert.equal(Math.min(...bounded.faces[0].corners.map(({ x }) => x)), 0);
     const flat = shapesOf(both, home, 2);
     assert.equal(flat[0].edges.length, 1);
     assert.ok(flat[2].edges.length > 10, 'with hatches');
