@@ -24,8 +24,13 @@ enum class KeyKind {
   kIntegers,  ///< a whole number, or a sequence of them
   kMapping,
   kSequence,
-  kFormula,  ///< a number, or a text that is a formula
-  kColour    ///< a name of CSS, or #rrggbb
+  kMappingOrWord,  ///< a mapping, or one of `choices`
+  kFormula,        ///< a number, or a text that is a formula
+  kColour,         ///< a name of CSS, or #rrggbb
+  kVector,         ///< a number for each dimension of the scene; in 1-D a number alone will do
+  kVectors,        ///< a vector, or a sequence of vectors
+  kFormulaVector,  ///< a vector whose numbers may be formulas
+  kFormulaVectors  ///< likewise, or a sequence of vectors of numbers
 };
 
 /// One question of a reader for one key. What does not belong to its kind is empty.
@@ -33,11 +38,15 @@ struct KeyRequest {
   std::string key;
   KeyKind kind = KeyKind::kAny;
   bool required = false;
-  Range range;                       ///< range of numbers, formulas and integers
-  std::vector<std::string> choices;  ///< allowed words of a choice
-  std::size_t length = 0;            ///< length of a sequence of numbers; 0: any
-  std::string fallback;              ///< as a file would say it; empty: none
-  Place mapping;                     ///< where the mapping of the key stands
+  Range range{};                       ///< range of numbers, formulas and integers
+  std::vector<std::string> choices{};  ///< allowed words of a choice
+  std::size_t length = 0;              ///< length of a sequence of numbers; 0: any
+  std::string fallback{};              ///< as a file would say it; empty: none
+  Place mapping{};                     ///< where the mapping of the key stands
+  /// It says all that its reader takes. What the same reader asks for the key besides adds nothing.
+  bool is_whole = false;
+  /// Keys of which each will do in place of this one, where it is required.
+  std::vector<std::string> alternatives{};
 };
 
 /// While it lives, the MappingReaders of its thread record their requests in it. One at a time per

@@ -272,10 +272,13 @@ std::optional<Colour> MappingReader::optional_colour(const std::string& key) {
 std::vector<double> MappingReader::required_numbers(const std::string& key, std::size_t length,
                                                     const std::string& hint) {
   log_request(value_, key, KeyKind::kNumbers, true, [&](KeyRequest& r) { r.length = length; });
-  const Value value = take_required(key);
-  const std::vector<double> numbers =
-      value.exists() ? numbers_of(value, key, length, hint) : std::vector<double>{};
-  return numbers.empty() ? std::vector<double>(std::max<std::size_t>(length, 1)) : numbers;
+  return take_numbers(key, length, hint);
+}
+
+std::vector<double> MappingReader::required_vector(const std::string& key, std::size_t length,
+                                                   const std::string& hint) {
+  log_request(value_, key, KeyKind::kVector, true);
+  return take_numbers(key, length, hint);
 }
 
 std::vector<double> MappingReader::optional_numbers(const std::string& key,
@@ -331,6 +334,14 @@ Value MappingReader::optional_value(const std::string& key) {
 Value MappingReader::required_value(const std::string& key, const std::string& hint) {
   log_request(value_, key, KeyKind::kAny, true);
   return take_required(key, hint);
+}
+
+void MappingReader::describe(KeyRequest request) const {
+  KeyLog* const log = KeyLog::current();
+  if (log == nullptr) return;
+  request.mapping = value_.place();
+  request.is_whole = true;
+  log->add(std::move(request));
 }
 
 void MappingReader::error_at(const std::string& key, std::string message, std::string hint) {
@@ -423,6 +434,14 @@ std::string MappingReader::choice_of(const Value& value, const std::string& key,
          name_of(key) + " must be one of " + listed(choices) + ", got " + value.described(),
          hint.empty() ? did_you_mean(word, choices) : hint);
   return fallback;
+}
+
+std::vector<double> MappingReader::take_numbers(const std::string& key, std::size_t length,
+                                                const std::string& hint) {
+  const Value value = take_required(key);
+  const std::vector<double> numbers =
+      value.exists() ? numbers_of(value, key, length, hint) : std::vector<double>{};
+  return numbers.empty() ? std::vector<double>(std::max<std::size_t>(length, 1)) : numbers;
 }
 
 std::vector<double> MappingReader::numbers_of(const Value& value, const std::string& key,

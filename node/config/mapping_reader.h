@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "node/config/colour.h"
+#include "node/config/key_log.h"
 #include "node/config/number.h"
 #include "node/config/value.h"
 
@@ -59,6 +60,9 @@ class MappingReader {
                                        const std::string& hint = {});
   std::vector<double> optional_numbers(const std::string& key, std::vector<double> fallback,
                                        std::size_t length = 0);
+  /// A vector of a scene with `length` dimensions.
+  std::vector<double> required_vector(const std::string& key, std::size_t length,
+                                      const std::string& hint = {});
   std::vector<long> required_integers(const std::string& key, long lowest, long highest);
 
   /// The value as it stands; a problem when it is missing (required_) or of another kind.
@@ -70,6 +74,10 @@ class MappingReader {
   Value optional_value(const std::string& key);
   /// @param hint  for a key that is missing
   Value required_value(const std::string& key, const std::string& hint = {});
+
+  /// Says for the log of requests what a key takes, where single requests show a part of it. Reads
+  /// nothing. @param request  `mapping` and `is_whole` need no value
+  void describe(KeyRequest request) const;
 
   void error_at(const std::string& key, std::string message, std::string hint = {});
 
@@ -97,6 +105,8 @@ class MappingReader {
   std::string text_of(const Value& value, const std::string& key, std::string fallback);
   std::string choice_of(const Value& value, const std::string& key, std::string fallback,
                         const std::vector<std::string>& choices);
+  std::vector<double> take_numbers(const std::string& key, std::size_t length,
+                                   const std::string& hint);
   std::vector<double> numbers_of(const Value& value, const std::string& key, std::size_t length,
                                  const std::string& hint = {});
 

@@ -100,7 +100,7 @@ Vec3 required_point(config::MappingReader& reader, const std::string& key, int s
   const std::string hint =
       example.empty() ? "write " + coordinates_text(space) : "for example " + example;
   const std::vector<double> numbers =
-      reader.required_numbers(key, static_cast<std::size_t>(space), hint);
+      reader.required_vector(key, static_cast<std::size_t>(space), hint);
   Vec3 point = Vec3::Zero();
   for (int i = 0; i < space; ++i) {
     point[i] = numbers[static_cast<std::size_t>(i)];
@@ -120,6 +120,7 @@ std::vector<Vec3> required_points(config::MappingReader& reader, const std::stri
                                   Problems& problems) {
   if (!reader.has(key)) return {required_point(reader, key, space)};
   const Value value = reader.optional_value(key);
+  reader.describe({.key = key, .kind = config::KeyKind::kVectors, .required = true});
   const std::string what = "'" + key + "' in " + reader.what();
   const bool list = is_list(value, space);
   std::vector<Vec3> points;

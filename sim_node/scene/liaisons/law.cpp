@@ -135,6 +135,7 @@ void for_each_law(const Function& function) {
 Law read_law(config::MappingReader& reader, const char* key, const char* argument, bool of_speed,
              ExpressionOwner owner, const ParameterValues& parameters, AskedOutside& outside,
              Problems& problems, std::vector<engine::ParameterFormula>& formulas) {
+  reader.describe({.key = key, .kind = config::KeyKind::kAny});
   const Value value = reader.optional_value(key);
   const std::string what = std::string(key) + " of " + reader.what();
   if (!value.exists()) return {};

@@ -224,6 +224,13 @@ void StateMachinePool::bind_as(std::uint32_t index,
 std::optional<LinkLaw> read_law(MappingReader& reader, LawPlace place, const Liaisons& liaisons,
                                 int space, const std::string& owner) {
   const bool sound_before = reader.ok();
+  if (place == LawPlace::kMatter) {
+    reader.describe({.key = kStiffness,
+                     .kind = config::KeyKind::kNumber,
+                     .required = true,
+                     .range = Range::not_negative(),
+                     .alternatives = {"liaison", "fixed", "driven"}});
+  }
   const Use use{reader, place, liaisons, space, owner};
   const Value name = place == LawPlace::kLink ? reader.required_value("liaison")
                                               : reader.optional_value("liaison");

@@ -212,6 +212,8 @@ void add_formulas(const std::vector<engine::ParameterFormula>& formulas, LinkSta
 /// The key `friction` of a state: a mapping, or `none`.
 void read_own_friction(config::MappingReader& reader, const FrictionRead& of_liaison,
                        const ExitSource& source, LinkState& state) {
+  reader.describe(
+      {.key = "friction", .kind = config::KeyKind::kMappingOrWord, .choices = {"none"}});
   const Value value = reader.optional_value("friction");
   if (!value.exists()) {
     add_formulas(of_liaison.formulas, state);

@@ -87,6 +87,7 @@ GeneratedMatter read_points(Source& source) {
   matter.radius_m = radius;
   check_points(source, matter);
   if (source.space > 1) return matter;
+  reader.describe({.key = "layout_at_m", .kind = config::KeyKind::kVectors});
   const bool has_layout = reader.optional_value("layout_at_m").exists();
   std::vector<Vec3> layout =
       has_layout ? required_points(reader, "layout_at_m", 2, source.problems) : in_a_row(count);

@@ -27,6 +27,10 @@ std::optional<PointSpec> optional_ball(config::MappingReader& reader, MassOfBall
 }
 
 std::vector<Vec3> read_places(Source& source) {
+  source.reader.describe({.key = "at_m",
+                          .kind = config::KeyKind::kVectors,
+                          .required = true,
+                          .alternatives = {"driven"}});
   if (source.driven_start != nullptr && !source.reader.has("at_m")) {
     source.reader.optional_value("at_m");
     return {*source.driven_start};

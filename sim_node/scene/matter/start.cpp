@@ -126,6 +126,7 @@ bool contradicts(const StartSpec& spec, bool is_led, MappingReader& reader,
 
 /// `spin_rad_per_s`: in 2-D a number, counter-clockwise, in 3-D a vector. Nothing turns in 1-D.
 Vec3 read_spin(MappingReader& reader, int space) {
+  reader.describe({.key = "spin_rad_per_s", .kind = config::KeyKind::kVector});
   if (space == 1) {
     if (!reader.has("spin_rad_per_s")) return Vec3::Zero();
     reader.optional_value("spin_rad_per_s");
@@ -159,6 +160,10 @@ bool add_motion(const StartMotion& motion, std::span<engine::Mat> mats) {
 StartSpec read_start(MappingReader& reader, int space, bool for_each, config::Problems& problems) {
   StartSpec spec;
   spec.velocity = {Vec3::Zero()};
+  using config::KeyKind;
+  const KeyKind kind = for_each ? KeyKind::kFormulaVectors : KeyKind::kFormulaVector;
+  reader.describe({.key = "velocity_m_per_s", .kind = kind});
+  reader.describe({.key = "displacement_m", .kind = KeyKind::kFormulaVector});
   const Value velocity = reader.optional_value("velocity_m_per_s");
   spec.spin = read_spin(reader, space);
   const Value displacement = reader.optional_value("displacement_m");

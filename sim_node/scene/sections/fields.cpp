@@ -119,6 +119,8 @@ WorldFields read_world(const Value& section, const std::set<std::string>& signal
   MappingReader reader(section, "world", problems);
   WorldFields fields;
   const int space = scene.space();
+  for (const char* key : {"gravity_m_per_s2", "flow_m_per_s"})
+    reader.describe({.key = key, .kind = config::KeyKind::kFormulaVector});
   const Value gravity = reader.optional_value("gravity_m_per_s2");
   scene.gravity_changes = gravity.exists() && has_formula(gravity);
   if (!scene.gravity_changes) {

@@ -150,6 +150,10 @@ void read_link(Assembly& assembly, const Value& value) {
   const bool is_along = reader.optional_value("along").exists();
   if (is_along && entry.law && !is_bend)
     reader.error_at("along", "only a bending liaison acts along lines", "write between: [a, b]");
+  reader.describe({.key = "between",
+                   .kind = config::KeyKind::kSequence,
+                   .required = true,
+                   .alternatives = {"within", "between_sets", "along"}});
   if (is_bend || is_along) {
     if (is_bend) read_bends(assembly, entry);
   } else if (reader.has("within")) {

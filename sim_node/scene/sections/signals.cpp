@@ -312,12 +312,20 @@ void refuse_unknown_keys(const Value::Entry& entry, config::MappingReader& reade
   }
 }
 
+/// Words that are a quantity of something, each once.
+std::vector<std::string> known_quantities() {
+  std::vector<std::string> known;
+  for (const QuantityWord& quantity : quantity_words()) {
+    if (std::ranges::find(known, quantity.word) == known.end()) known.emplace_back(quantity.word);
+  }
+  return known;
+}
+
 /// Checks a signal of something that has a problem itself: what is wrong whatever that is.
 void check_unowned_signal(const Assembly& assembly, config::MappingReader& reader,
                           const Value& subject) {
   const std::string word = reader.required_text("quantity");
-  std::vector<std::string> known;
-  for (const QuantityWord& quantity : quantity_words()) known.emplace_back(quantity.word);
+  const std::vector<std::string> known = known_quantities();
   if (!word.empty() && std::ranges::find(known, word) == known.end()) {
     reader.error_at("quantity", "nothing has a quantity '" + word + "'",
                     config::did_you_mean(word, known));
@@ -336,6 +344,10 @@ void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Sign
   check_name(entry.key, entry.key_place, assembly.problems);
   config::MappingReader reader(entry.value, "signal '" + entry.key + "'", assembly.problems);
   refuse_unknown_keys(entry, reader, assembly.problems);
+  reader.describe({.key = "quantity",
+                   .kind = config::KeyKind::kChoice,
+                   .required = true,
+                   .choices = known_quantities()});
   const Value subject = reader.optional_value("of");
   JoinedLiaisons joined = joined_liaisons(assembly, subject);
   if (joined.sets.size() == 1 && joined.others.empty())
