@@ -13,6 +13,8 @@
 #include "record_node/record_config.h"
 #include "sim_node/scene/sections/scene_reader.h"
 #include "sim_node/sim_config.h"
+#include "tests/schema/document_json.h"
+#include "tests/schema/variations.h"
 #include "tests/support/filled.h"
 #include "viz_node/viz_config.h"
 
@@ -328,6 +330,25 @@ FileFacts facts_of(const std::string& sort) {
   facts.add_parameter_names(
       config::load_file(kRoot / "launch_configs/liaisons/standard.yaml", problems));
   return facts;
+}
+
+void add_variations(const std::string& sort, FileFacts& facts) {
+  const FileFacts base = facts;
+  Variations variations(base);
+  std::vector<Document> all = cover_documents();
+  std::erase_if(all, [&](const Document& document) { return document.sort != sort; });
+  for (const Document& document : all) variations.learn(json_of_text(document.text));
+  for (const Document& document : all) {
+    const auto take = [&](const std::string& text, const std::string& section) {
+      const Document variation{sort, document.name, text};
+      config::Problems problems;
+      const config::Value root = config::load_text(text, document.name, problems);
+      const config::KeyLog log;
+      read(variation, problems);
+      facts.add_variation(root, section, log, problems);
+    };
+    variations.of(json_of_text(document.text), take);
+  }
 }
 
 }  // namespace cordis::test

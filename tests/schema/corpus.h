@@ -29,4 +29,8 @@ void read(const Document& document, config::Problems& problems);
 /// driver may read another's mapping.
 FileFacts facts_of(const std::string& sort);
 
+/// Adds what the readers ask of variations of the cover documents of a sort: no key is new, and what
+/// one document happened to show gets less strict.
+void add_variations(const std::string& sort, FileFacts& facts);
+
 }  // namespace cordis::test

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "node/config/key_log.h"
+#include "node/config/problem.h"
 #include "node/config/value.h"
 
 namespace cordis::test {
@@ -30,7 +31,8 @@ struct KeyFacts {
   std::size_t min_length = 0;
   std::size_t max_length = 0;
   std::set<std::string> fallbacks;
-  std::size_t mapping_count = 0;  ///< mappings in which it was asked for
+  std::size_t mapping_count = 0;          ///< mappings in which it was asked for
+  std::vector<std::string> alternatives;  ///< keys of which each will do in its place
 
   void add(const config::KeyRequest& request);
 };
@@ -49,6 +51,12 @@ class FileFacts {
   /// are left out.
   void add(const config::Value& root, const config::KeyLog& log);
 
+  /// Adds what was asked while a variation of a file was read. It may make a known key less strict,
+  /// and adds no key. A mapping counts if it has no problem and all its keys were asked for.
+  /// @param section  key of the only section that differs. Others may not be read to their end.
+  void add_variation(const config::Value& root, const std::string& section,
+                     const config::KeyLog& log, const config::Problems& problems);
+
   /// Adds the names that a file gives to parameters.
   void add_parameter_names(const config::Value& root);
 
@@ -62,9 +70,10 @@ class FileFacts {
 
  private:
   struct Reading;
+  using Requests = std::vector<const config::KeyRequest*>;
   void walk(const config::Value& value, const KeyPath& path, const Reading& reading);
-  void add_mapping(const config::Value& value, const KeyPath& path,
-                   const std::vector<config::KeyRequest>& requests);
+  void add_mapping(const config::Value& value, const KeyPath& path, const Requests& requests);
+  void relax_mapping(const config::Value& value, const KeyPath& path, const Requests& requests);
 
   std::map<KeyPath, std::map<std::string, VariantFacts>> paths_;
   std::set<KeyPath> words_;

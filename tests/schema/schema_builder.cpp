@@ -56,15 +56,15 @@ std::string text_of(const KeyPath& path) {
   return text;
 }
 
-Json number(double value) {
+Json number_json(double value) {
   const bool whole = value == std::round(value) && std::abs(value) < 1e15;
   return whole ? Json(static_cast<long>(value)) : Json(value);
 }
 
 void add_range(const KeyFacts& facts, Json& schema) {
   if (std::isfinite(facts.lowest))
-    schema[facts.lowest_excluded ? "exclusiveMinimum" : "minimum"] = number(facts.lowest);
-  if (std::isfinite(facts.highest)) schema["maximum"] = number(facts.highest);
+    schema[facts.lowest_excluded ? "exclusiveMinimum" : "minimum"] = number_json(facts.lowest);
+  if (std::isfinite(facts.highest)) schema["maximum"] = number_json(facts.highest);
 }
 
 /// The types of JSON that a reader of this kind takes.
@@ -81,6 +81,11 @@ std::set<std::string> types_of(const KeyFacts& facts) {
       {KeyKind::kMapping, {"object"}},
       {KeyKind::kSequence, {"array"}},
       {KeyKind::kFormula, {"number", "string"}},
+      {KeyKind::kVector, {"array", "number"}},
+      {KeyKind::kVectors, {"array", "number"}},
+      {KeyKind::kFormulaVector, {"array", "number", "string"}},
+      {KeyKind::kFormulaVectors, {"array", "number", "string"}},
+      {KeyKind::kMappingOrWord, {"object", "string"}},
       {KeyKind::kIntegerOrWord, {"integer", "string"}},
   };
   std::set<std::string> types;
@@ -107,6 +112,39 @@ void add_default(const KeyFacts& facts, Json& schema) {
 
 Json parameter_of_a_part() {
   return {{"type", "string"}, {"pattern", kParameterOfAPart}};
+}
+
+/// True if a value is a vector of the scene's dimensions, or a sequence of such.
+bool is_vector(const KeyFacts& facts) {
+  return std::ranges::any_of(facts.kinds, [](KeyKind kind) {
+    return kind == KeyKind::kVector || kind == KeyKind::kVectors ||
+           kind == KeyKind::kFormulaVector || kind == KeyKind::kFormulaVectors;
+  });
+}
+
+/// Adds what the items of a vector are: numbers, as many as the scene has dimensions.
+void add_vector_items(const KeyFacts& facts, bool may_be_parameter, Json& schema) {
+  constexpr int kMaxDimensions = 3;
+  const auto& kinds = facts.kinds;
+  const bool has_formulas =
+      kinds.contains(KeyKind::kFormulaVector) || kinds.contains(KeyKind::kFormulaVectors);
+  const bool is_list =
+      kinds.contains(KeyKind::kVectors) || kinds.contains(KeyKind::kFormulaVectors);
+  std::set<std::string> number{"number"};
+  if (has_formulas || may_be_parameter) number.insert("string");
+  Json items{{"type", type_json(number)}};
+  if (is_list) {
+    std::set<std::string> item = number;
+    item.insert("array");
+    const Json of_number = items;
+    items = {{"type", type_json(item)},
+             {"items", of_number},
+             {"minItems", 1},
+             {"maxItems", kMaxDimensions}};
+  }
+  schema["items"] = std::move(items);
+  schema["minItems"] = 1;
+  if (!is_list) schema["maxItems"] = kMaxDimensions;
 }
 
 /// The schema of a value that is no mapping.
@@ -144,7 +182,9 @@ Json scalar(const KeyFacts& facts, const std::string& key, bool may_be_parameter
   schema["type"] = type_json(with_parameter);
   if (parameter_only) schema["pattern"] = kParameterOfAPart;
   if (types.contains("number") || types.contains("integer")) add_range(facts, schema);
-  if (kinds.contains(KeyKind::kNumbers) || kinds.contains(KeyKind::kIntegers)) {
+  if (is_vector(facts)) {
+    add_vector_items(facts, may_be_parameter, schema);
+  } else if (kinds.contains(KeyKind::kNumbers) || kinds.contains(KeyKind::kIntegers)) {
     std::set<std::string> item{kinds.contains(KeyKind::kIntegers) ? "integer" : "number"};
     if (may_be_parameter) item.insert("string");
     Json items{{"type", type_json(item)}};
@@ -191,7 +231,12 @@ Json SchemaBuilder::value(const KeyPath& path, const std::string& key, const Key
     if (facts_.has_words(item)) one = {{"anyOf", Json::array({one, {{"type", "string"}}})}};
     array["items"] = std::move(one);
   }
-  const bool is_plain = !facts.of_any_kind || facts.kinds.contains(KeyKind::kMapping) ||
+  if (facts.kinds.contains(KeyKind::kMappingOrWord)) {
+    return {{"anyOf",
+             Json::array({object_or_reference(canonical(inner)), Json{{"enum", facts.choices}}})}};
+  }
+  const bool is_of_any_kind = facts.of_any_kind || facts.kinds == std::set{KeyKind::kAny};
+  const bool is_plain = !is_of_any_kind || facts.kinds.contains(KeyKind::kMapping) ||
                         facts.kinds.contains(KeyKind::kSequence);
   if (is_plain && !has_object) return array;
   if (is_plain && !may_be_parameter(path)) return object_or_reference(canonical(inner));
@@ -229,7 +274,15 @@ Json SchemaBuilder::variant_object(const KeyPath& path, const std::string& varia
   Json required = Json::array();
   for (const auto& [key, of_key] : facts.keys) {
     const bool always = of_key.required && of_key.mapping_count == facts.mapping_count;
-    if (always && !may_be_like_another(path)) required.push_back(key);
+    if (!always || may_be_like_another(path)) continue;
+    if (of_key.alternatives.empty()) {
+      required.push_back(key);
+      continue;
+    }
+    Json one_of_them = Json::array({{{"required", {key}}}});
+    for (const std::string& other : of_key.alternatives)
+      one_of_them.push_back({{"required", {other}}});
+    schema["allOf"].push_back({{"anyOf", std::move(one_of_them)}});
   }
   if (!required.empty()) schema["required"] = std::move(required);
   if (!facts.keys.contains("liaison")) {

@@ -1,7 +1,6 @@
 // tests/schema/schema_test.cpp -- the schemas of scenes, launch files and device files are what the
 // readers take.
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +15,9 @@
 #include <gtest/gtest.h>
 
 #include "node/config/yaml_reader.h"
+#include "tests/schema/cases.h"
 #include "tests/schema/corpus.h"
+#include "tests/schema/document_json.h"
 #include "tests/schema/schemas.h"
 #include "tests/support/rounds.h"
 #include "tests/support/test_seed.h"
@@ -106,34 +107,6 @@ config::Problems problems_of(const Document& document, const std::string& text) 
   config::Problems problems;
   read(changed, problems);
   return problems;
-}
-
-/// A value as a reader of JSON sees it.
-Json json_of(const Value& value) {
-  if (value.kind() == Value::Kind::kSequence) {
-    Json list = Json::array();
-    for (const Value& item : value.items()) list.push_back(json_of(item));
-    return list;
-  }
-  if (value.kind() == Value::Kind::kMapping) {
-    Json map = Json::object();
-    for (const Value::Entry& entry : value.entries()) map[entry.key] = json_of(entry.value);
-    return map;
-  }
-  if (value.kind() == Value::Kind::kNothing) return nullptr;
-  const std::string& text = value.text();
-  if (value.quoted()) return text;
-  if (text == "true" || text == "false") return text == "true";
-  double number = 0.0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (failure != std::errc{} || end != text.data() + text.size()) return text;
-  const bool whole = text.find_first_of(".eE") == std::string::npos;
-  return whole ? Json(static_cast<long>(number)) : Json(number);
-}
-
-Json json_of_text(const std::string& text) {
-  config::Problems problems;
-  return json_of(config::load_text(text, "document", problems));
 }
 
 /// One word with a slip of the hand.
@@ -324,8 +297,7 @@ TEST(Schema, RefusesWhatTheReadersRefuseAndTakesWhatShips) {
     }
   }
   EXPECT_GT(cases.size(), 300u);
-  if (const char* file = std::getenv("CORDIS_SCHEMA_CASES"); file != nullptr)
-    std::ofstream(file) << cases.dump();
+  write_cases("keys", cases);
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ void leave_program_out(Json& launch) {
 }  // namespace
 
 BuiltSchema build_schema(const std::string& sort) {
-  const FileFacts facts = facts_of(sort);
+  FileFacts facts = facts_of(sort);
+  if (sort == "scene") add_variations(sort, facts);
   SchemaBuilder builder(facts, sort == "scene"    ? notes_of_scene()
                                : sort == "device" ? notes_of_device()
                                                   : notes_of_launch());

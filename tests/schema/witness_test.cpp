@@ -66,6 +66,8 @@ constexpr std::array kExceptions{
     Exception{"scene liaisons.NAME.force_limit_n", "a state has one in the gallery"},
     Exception{"scene liaisons.NAME.rest", "a link says it in the gallery"},
     Exception{"scene liaisons.NAME.states.NAME.dissipation", "a liaison has one in the gallery"},
+    Exception{"scene liaisons.NAME.states.NAME.friction: none",
+              "a state of the gallery that slides has a lower friction"},
     Exception{"scene liaisons.NAME.states.NAME.friction.", "the liaison has them in the gallery"},
     Exception{"scene links.ITEM.stiffness_n_m_per_rad", "the liaison has it in the gallery"},
     Exception{"scene links.ITEM.viscosity_n_m_s_per_rad", "the liaison has it in the gallery"},
