@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
 #include <stdexcept>
 
@@ -256,9 +257,7 @@ void read_launch(const Document& document, config::Problems& problems) {
   }
 }
 
-}  // namespace
-
-std::vector<Document> shipped_documents() {
+std::vector<Document> load_shipped_documents() {
   std::vector<Document> all;
   add_folder("scene", "launch_configs/scenes", all);
   add_folder("scene", "launch_configs/lab", all);
@@ -272,6 +271,13 @@ std::vector<Document> shipped_documents() {
   }
   add_blocks(kRoot / "README.md", all);
   return all;
+}
+
+}  // namespace
+
+std::vector<Document> shipped_documents() {
+  static const std::vector<Document> kAll = load_shipped_documents();
+  return kAll;
 }
 
 std::vector<Document> cover_documents() {
@@ -310,7 +316,9 @@ void read(const Document& document, config::Problems& problems) {
   }
 }
 
-FileFacts facts_of(const std::string& sort) {
+namespace {
+
+FileFacts observed_facts(const std::string& sort) {
   FileFacts facts;
   std::vector<Document> all = cover_documents();
   if (sort != "device") {
@@ -330,6 +338,15 @@ FileFacts facts_of(const std::string& sort) {
   facts.add_parameter_names(
       config::load_file(kRoot / "launch_configs/liaisons/standard.yaml", problems));
   return facts;
+}
+
+}  // namespace
+
+FileFacts facts_of(const std::string& sort) {
+  static std::map<std::string, FileFacts> known;
+  const auto found = known.find(sort);
+  return found != known.end() ? found->second
+                              : known.emplace(sort, observed_facts(sort)).first->second;
 }
 
 void add_variations(const std::string& sort, FileFacts& facts) {
