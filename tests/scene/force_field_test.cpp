@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_node/engine/world.h"
+#include "sim_node/plan/plan.h"
 #include "sim_node/scene/naming.h"
 #include "sim_node/scene/parameters.h"
 #include "tests/scene/bad_scene.h"
@@ -231,6 +232,28 @@ TEST_P(BadForceFields, AreOneProblemAtItsPlace) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadForceFields, testing::ValuesIn(kBadFields));
+
+/// A mass of K' = 9 under gravity of a formula.
+plan::Stability stability_under(const std::string& gravity) {
+  const Scene scene = sound_scene(2, test::filled(R"YAML(world: {gravity_m_per_s2: [0, "<gravity>"]}
+signals: {height: {of: m, quantity: position, axis: y}, changed: {quantity: changes}}
+liaisons: {k: {kind: spring, stiffness_n_per_m: 9}}
+matter:
+  top: {kind: fixed, at_m: [0, 0]}
+  m: {kind: mass, mass_kg: 1.0e-6, at_m: [0, -0.2]}
+links: [{liaison: k, between: [top, m]}]
+)YAML",
+                                                  {{"gravity", gravity}}));
+  return plan::stability_of(scene.network, plan::liaison_graph(scene.network));
+}
+
+TEST(ForceField, OfWhatNoMassMovesLeavesTheLimitSure) {
+  for (const char* given : {"-9.81", "-9.81 * time_s", "-9.81 * if(changed > 0, 0, 1)"})
+    EXPECT_TRUE(stability_under(given).diverges()) << given;
+  const plan::Stability fed_back = stability_under("-9.81 * height");
+  EXPECT_FALSE(fed_back.diverges());
+  EXPECT_FALSE(fed_back.holds());
+}
 
 }  // namespace
 }  // namespace cordis::scene

@@ -247,6 +247,16 @@ ForceSlopes slopes_of_field(const ForceField& field, const std::vector<bool>& is
 
 }  // namespace
 
+bool is_given(const engine::NetworkDescription& network, const TimeFunction& function) {
+  if (asks_for_motion(function)) return false;
+  return std::ranges::all_of(function.formula, [&](const engine::Program& formula) {
+    return std::ranges::all_of(formula.code, [&](const engine::Instruction& each) {
+      return each.operation != engine::Operation::kVariable ||
+             is_given(network, network.variables[each.slot]);
+    });
+  });
+}
+
 SlopesOfForces::SlopesOfForces(const engine::NetworkDescription& network) : network_(network) {
   for (const engine::Variable& variable : network.variables)
     ranges_.push_back(range_of_variable(network, variable));

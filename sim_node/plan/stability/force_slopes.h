@@ -22,6 +22,10 @@ struct ForceSlopes {
   std::vector<std::uint32_t> variables = {};
 };
 
+/// True if no motion of a mass changes the values of a function: it asks for no place and no velocity of its MAT, and
+/// of variables for those of time, of states, and of where a port or a fixed point is. O(instructions).
+bool is_given(const engine::NetworkDescription& network, const engine::TimeFunction& function);
+
 /// The slopes of the forces of a network. Those of equal formulas, whose variables lie within the same numbers, are
 /// searched once.
 class SlopesOfForces {

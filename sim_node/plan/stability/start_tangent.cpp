@@ -14,6 +14,7 @@
 #include "sim_node/engine/integrators/integrator_limits.h"
 #include "sim_node/engine/integrators/stiff_friction.h"
 #include "sim_node/plan/stability/bend_slope.h"
+#include "sim_node/plan/stability/force_slopes.h"
 #include "sim_node/plan/stability/limit_weights.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
@@ -172,7 +173,7 @@ StartTangent::StartTangent(const engine::NetworkDescription& network, double sol
   }
   // What a force that pushes away takes from a stiffness is not known: so nothing is sure of its MAT.
   for (const engine::Drive& drive : network.drives) {
-    if (drive.is_force && !is_of_time(network.time_functions[drive.function]))
+    if (drive.is_force && !is_given(network, network.time_functions[drive.function]))
       hold(drive.mat, drive.mat);
   }
   std::uint32_t index = 0;
