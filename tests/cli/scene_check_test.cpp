@@ -454,7 +454,7 @@ step: {rate_hz: <rate>, gesture_rate_hz: 100}
 matter:
   s: {kind: lattice, structure: cubic, corner_m: [0, 0, 0], counts: [4, 4, 4], spacing_m: 0.02, mass_kg: 0.001}
 liaisons:
-  push: {kind: state_machine, stiffness_n_per_m: 100, pulls: false}
+  push: {kind: state_machine, stiffness_n_per_m: 100, viscosity_n_s_per_m: 0.02, pulls: false}
 links:
   - {liaison: push, within: s, rest_m: 0.01, range_m: 0.01}
 )",

@@ -248,8 +248,8 @@ links: [{liaison: k, between: [top, m]}]
 }
 
 TEST(ForceField, OfWhatNoMassMovesLeavesTheLimitSure) {
-  for (const char* given : {"-9.81", "-9.81 * time_s", "-9.81 * if(changed > 0, 0, 1)"})
-    EXPECT_TRUE(stability_under(given).diverges()) << given;
+  for (const char* gravity : {"-9.81", "-9.81 * time_s", "-9.81 * if(changed > 0, 0, 1)"})
+    EXPECT_TRUE(stability_under(gravity).diverges()) << gravity;
   const plan::Stability fed_back = stability_under("-9.81 * height");
   EXPECT_FALSE(fed_back.diverges());
   EXPECT_FALSE(fed_back.holds());

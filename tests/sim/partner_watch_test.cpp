@@ -29,7 +29,7 @@ space: 2
 step: {rate_hz: 1000}
 liaisons:
   tension: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}
-  push: {kind: state_machine, stiffness_n_per_m: <stiffness>, pulls: false}
+  push: {kind: state_machine, stiffness_n_per_m: <stiffness>, viscosity_n_s_per_m: 0.02, pulls: false}
 matter:
   middle: {kind: fixed, at_m: [0.1, 0.1]}
   crowd: {kind: lattice, structure: square, corner_m: [0, 0], counts: [5, 5], spacing_m: 0.05,

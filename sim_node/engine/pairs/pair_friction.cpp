@@ -169,6 +169,7 @@ void PairFriction::remember(const StateIndex* states, StateIndex first_state,
                             PairBlock& block) noexcept {
   const std::uint32_t* column = block.rows().pairs.column;
   const FrictionRows found = rows();
+  if (block.first() > 0) stretches_.end_row(block.first() - 1);  // rows left out have no contact
   for (std::size_t a = block.first(); a < block.last(); ++a) {
     for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
       if (found.phase[i] == kNoContact) continue;
