@@ -65,7 +65,7 @@ space: 2
 step: {rate_hz: 1000, integrator: cordis}
 liaisons:
   pull: {kind: spring_damper, stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01}
-  push: {kind: state_machine, stiffness_n_per_m: 150, pulls: false}
+  push: {kind: state_machine, stiffness_n_per_m: 150, viscosity_n_s_per_m: 0.02, pulls: false}
   wall: {kind: spring, stiffness_n_per_m: 100}
 matter:
   middle: {kind: fixed, at_m: [0.1, 0.1]}
