@@ -761,11 +761,7 @@ void SetPairs::measure_surfaces(const double* position, const std::vector<std::u
 void SetPairs::list_surfaces() noexcept {
   if (!surfaces_.list()) return;
   surfaces_changed_ = true;
-  for (const std::uint32_t m : surfaces_.left()) {
-    const auto own = static_cast<std::ptrdiff_t>(4 * m);
-    std::fill_n(force_.begin() + own, 4, 0.0);
-    std::fill_n(viscous_.begin() + own, 4, 0.0);
-  }
+  for (const std::uint32_t m : surfaces_.left()) clear_forces_of(m, 1);
 }
 
 void SetPairs::clear_forces() noexcept {
