@@ -95,22 +95,18 @@ std::string turning_text(const SceneCheck& check) {
 std::string bending_text(const SceneCheck& check) {
   const plan::Stability& stability = check.plan.stability;
   if (!stability.holds()) return {};
-  std::string text;
-  if (stability.bending) {
-    const scene::Called law = scene::call_liaison(check.scene, stability.bending);
-    text += fmt::format(
-        "            what passages over the bend of {}{} gain may add up without\n"
-        "            viscosity; energy is watched during the run\n",
-        law.name, location(law));
-  }
-  if (stability.touching) {
-    const scene::Called contact = scene::call_liaison(check.scene, stability.touching);
-    text += fmt::format(
-        "            what touches of {}{} gain may add up, for its viscosity\n"
-        "            may take less; energy is watched during the run\n",
-        contact.name, location(contact));
-  }
-  return text;
+  const auto text_about = [&](const std::optional<plan::LiaisonId>& liaison,
+                              fmt::string_view sentence) -> std::string {
+    if (!liaison) return {};
+    const scene::Called called = scene::call_liaison(check.scene, liaison);
+    return fmt::format(fmt::runtime(sentence), called.name, location(called));
+  };
+  return text_about(stability.bending,
+                    "            what passages over the bend of {}{} gain may add up without\n"
+                    "            viscosity; energy is watched during the run\n") +
+         text_about(stability.touching,
+                    "            what touches of {}{} gain may add up, for its viscosity\n"
+                    "            may take less; energy is watched during the run\n");
 }
 
 /// Where the step is surely unstable: from which rate on it is not.

@@ -235,6 +235,28 @@ double damping_of_gain(double stiffness, double step) noexcept {
   return -std::log1p(-0.25 * stiffness) * step / (std::numbers::pi * std::sqrt(stiffness));
 }
 
+/// undamped_contact_of(). @param all  worst_contact_among() those that are clamped
+std::optional<ContactGain> undamped_among(const engine::NetworkDescription& network,
+                                          const LiaisonGraph& graph,
+                                          const std::optional<ContactGain>& all) {
+  if (!all) return {};
+  const double enough = damping_of_gain(std::min(all->stiffness, kCertainBend), network.step);
+  std::vector<bool> is_undamped_link(network.state_links.size());
+  std::vector<bool> is_undamped_set(network.sets.size());
+  for (const Edge& edge : graph.edges) {
+    if (edge.liaison.kind == LiaisonKind::kStateLink)
+      is_undamped_link[edge.liaison.index] = edge.touch_damping < enough;
+  }
+  for (const ContactBound& contact : graph.contacts)
+    is_undamped_set[contact.set] = contact.touch_damping < enough;
+  const auto counts = [&](LiaisonId liaison) {
+    return liaison.kind == LiaisonKind::kSet
+               ? is_undamped_set[liaison.index]
+               : liaison.kind == LiaisonKind::kStateLink && is_undamped_link[liaison.index];
+  };
+  return worst_touch_among(network, graph, counts, Packs::kAsOneSide);
+}
+
 }  // namespace
 
 double Plan::margin() const noexcept {
@@ -273,7 +295,7 @@ std::optional<Uncertainty> uncertainty_of(const engine::NetworkDescription& netw
             : "each touch of it with what else touches the same mass may gain energy, for their K' "
               "together is above 1"};
   }
-  const std::optional<ContactGain> undamped = undamped_contact_of(network, graph);
+  const std::optional<ContactGain> undamped = undamped_among(network, graph, contact);
   if (undamped && undamped->stiffness > kCertainFall) {
     return Uncertainty{
         undamped->liaison,
@@ -573,23 +595,7 @@ std::optional<ContactGain> worst_contact_of(const engine::NetworkDescription& ne
 
 std::optional<ContactGain> undamped_contact_of(const engine::NetworkDescription& network,
                                                const LiaisonGraph& graph) {
-  const std::optional<ContactGain> all = worst_contact_among(network, graph, /*clamped=*/true);
-  if (!all) return {};
-  const double enough = damping_of_gain(std::min(all->stiffness, kCertainBend), network.step);
-  std::vector<bool> is_undamped_link(network.state_links.size());
-  std::vector<bool> is_undamped_set(network.sets.size());
-  for (const Edge& edge : graph.edges) {
-    if (edge.liaison.kind == LiaisonKind::kStateLink)
-      is_undamped_link[edge.liaison.index] = edge.touch_damping < enough;
-  }
-  for (const ContactBound& contact : graph.contacts)
-    is_undamped_set[contact.set] = contact.touch_damping < enough;
-  const auto counts = [&](LiaisonId liaison) {
-    return liaison.kind == LiaisonKind::kSet
-               ? is_undamped_set[liaison.index]
-               : liaison.kind == LiaisonKind::kStateLink && is_undamped_link[liaison.index];
-  };
-  return worst_touch_among(network, graph, counts, Packs::kAsOneSide);
+  return undamped_among(network, graph, worst_contact_among(network, graph, /*clamped=*/true));
 }
 
 namespace {

@@ -120,10 +120,9 @@ const char* limits_of(const LinkState& state) noexcept {
 
 /// What keeps a state from having a stiffness and a viscosity alone; nullptr: nothing does.
 const char* beyond_linear(const LinkState& state) noexcept {
-  if (!is_none(state.elasticity) && !is_product(state.elasticity, Quantity::kElongation))
-    return "elasticity";
-  if (!is_none(state.dissipation) && !is_product(state.dissipation, Quantity::kSpeed))
-    return "dissipation";
+  const LawsOfBend laws = laws_of_bend(state);
+  if (laws.elasticity != nullptr) return "elasticity";
+  if (laws.dissipation != nullptr) return "dissipation";
   return limits_of(state);
 }
 

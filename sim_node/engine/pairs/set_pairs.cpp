@@ -749,11 +749,7 @@ void SetPairs::measure_due(const double* position, const std::vector<std::uint32
 /// Likewise, and lists the pairs. The forces of what is far are forgotten.
 void SetPairs::measure_surfaces(const double* position, const std::vector<std::uint32_t>& column,
                                 bool may_leave) noexcept {
-  measure_due(position, column, may_leave, [this](std::size_t m) {
-    const auto own = static_cast<std::ptrdiff_t>(4 * m);
-    std::fill_n(force_.begin() + own, 4, 0.0);
-    std::fill_n(viscous_.begin() + own, 4, 0.0);
-  });
+  measure_due(position, column, may_leave, [this](std::size_t m) { clear_forces_of(m, 1); });
   list_surfaces();
 }
 

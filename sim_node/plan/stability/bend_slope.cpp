@@ -58,13 +58,7 @@ double lever_of(const NetworkDescription& network) {
   double sides = 0.0;
   for (const engine::Bend& bend : network.bends) sides += bend.length_ab + bend.length_bc;
   if (network.dimension == 1) return sides;
-  engine::Vec3 lowest = network.mats.front().position;
-  engine::Vec3 highest = lowest;
-  for (const engine::Mat& mat : network.mats) {
-    lowest = lowest.cwiseMin(mat.position);
-    highest = highest.cwiseMax(mat.position);
-  }
-  return (highest - lowest).norm();
+  return diagonal_of(network);
 }
 
 double angle_at_start(const NetworkDescription& network, const engine::Bend& bend) {

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "node/assert.h"
 #include "node/disjoint_sets.h"
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/bend_slope.h"
@@ -23,17 +24,6 @@ namespace {
 using engine::LiaisonKind;
 
 constexpr double kMinSpeed = 1.0;  // [m/s]
-
-/// The diagonal of the box about all MATs [m].
-double extent_of(const engine::NetworkDescription& network) {
-  engine::Vec3 lowest = network.mats.front().position;
-  engine::Vec3 highest = lowest;
-  for (const engine::Mat& mat : network.mats) {
-    lowest = lowest.cwiseMin(mat.position);
-    highest = highest.cwiseMax(mat.position);
-  }
-  return (highest - lowest).norm();
-}
 
 double weight_of(const engine::NetworkDescription& network) {
   double weight = 0.0;
@@ -82,7 +72,7 @@ double energy_of_bodies(const engine::NetworkDescription& network) {
     join(bend.mat_a, bend.mat_b);
     join(bend.mat_b, bend.mat_c);
   }
-  const double extent = extent_of(network);
+  const double extent = diagonal_of(network);
   std::vector<double> energy(count, 0.0);
   for (std::uint32_t i = 0; i < count; ++i) {
     const engine::Mat& mat = network.mats[i];
@@ -164,7 +154,7 @@ double energy_brought(const engine::NetworkDescription& network) {
   for (const engine::Mat& mat : network.mats) {
     if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
   }
-  return energy + weight_of(network) * extent_of(network);
+  return energy + weight_of(network) * diagonal_of(network);
 }
 
 /// The first Maxwell element, bend or set whose elasticity follows a variable.
@@ -292,6 +282,17 @@ Interval range_of_variable(const engine::NetworkDescription& network,
   return kAnyNumber;
 }
 
+double diagonal_of(const engine::NetworkDescription& network) {
+  CORDIS_ASSERT(!network.mats.empty());
+  engine::Vec3 lowest = network.mats.front().position;
+  engine::Vec3 highest = lowest;
+  for (const engine::Mat& mat : network.mats) {
+    lowest = lowest.cwiseMin(mat.position);
+    highest = highest.cwiseMax(mat.position);
+  }
+  return (highest - lowest).norm();
+}
+
 Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
   if (std::ranges::any_of(network.state_machines, engine::laws_ask_for_variable)) {
@@ -330,7 +331,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   }
   const double driven = sum_of_drive_forces(network);
   reach.driven = driven;
-  reach.pushed = factor * driven * extent_of(network);
+  reach.pushed = factor * driven * diagonal_of(network);
   reach.force = driven + weight_of(network);
   reach.stored = factor * stored + reach.pushed;
   reach.brought = factor * energy_brought(network) + reach.stored;

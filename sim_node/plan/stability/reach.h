@@ -48,6 +48,9 @@ struct Reach {
   int bisections = LinkBox{}.bisections;  ///< at most, for the slope of an expression; > 0
 };
 
+/// The diagonal of the box about all MATs at the start [m]. O(MATs). Precondition: there is one.
+double diagonal_of(const engine::NetworkDescription& network);
+
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
 /// @param factor  of the energies

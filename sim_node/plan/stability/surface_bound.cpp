@@ -321,7 +321,6 @@ class JoinedBits {
     rows_[b][a / kBits] |= std::uint64_t{1} << (a % kBits);
   }
   std::size_t count() const { return rows_.size(); }
-  std::size_t word_count() const { return words_; }
   const Bits& row(std::size_t a) const { return rows_[a]; }
   Bits all() const {
     Bits bits(words_, 0);
