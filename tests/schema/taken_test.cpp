@@ -125,7 +125,7 @@ bool refuses(const Spot& spot, const Json& document, const Pointer& pointer) {
 Json around(const Json& document, const Pointer& pointer) {
   Json little = document;
   for (const auto& [section, value] : document.items()) {
-    const bool is_other = value.is_structured() && section != pointer[0];
+    const bool is_other = value.is_structured() && section != pointer[0].get<std::string>();
     if (is_other) little[section] = value.is_array() ? Json::array() : Json::object();
     if (is_other && (section == "step" || section == "accuracy")) little.erase(section);
   }
