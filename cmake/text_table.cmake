@@ -12,8 +12,12 @@ file(WRITE ${OUT} "// Made by cmake/text_table.cmake.
 namespace cordis::cli {
 namespace {
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"  // a schema is longer than ISO C++ asks compilers to take
+
 constexpr ShippedText kTexts[] = {
 ${rows}};
+#pragma GCC diagnostic pop
 
 }  // namespace
 
