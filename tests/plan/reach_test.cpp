@@ -111,7 +111,8 @@ TEST(Reach, BetweenGroupsHasTheRangeOfTheirMassesAndKnowsAPort) {
   EXPECT_EQ(reach.mass_b.high, 0.0) << "a port has none";
   EXPECT_DOUBLE_EQ(reach.inverse_mass, 1.0) << "that of the lighter one";
   EXPECT_TRUE(reach.held);
-  EXPECT_DOUBLE_EQ(reach.energy, kMotion + kFall) << "no more than there is";
+  EXPECT_DOUBLE_EQ(reach.energy, kMotion + kFall - 50.0)
+      << "what one body has: not the fall of the other";
 }
 
 TEST(Reach, BetweenGroupsHasTheEnergyOfTwoBodiesAndAllThatLinksStore) {
@@ -129,6 +130,32 @@ TEST(Reach, BetweenGroupsHasTheEnergyOfTwoBodiesAndAllThatLinksStore) {
   EXPECT_NEAR(energy_of(), 4.0 * kMotion, 1e-9) << "a body of two";
   scene.links.push_back({0, 1, 1000.0, 0.0, 4.9});
   EXPECT_NEAR(energy_of(), 4.0 * kMotion + 5.0, 1e-9) << "and a spring";
+}
+
+TEST(EnergyShare, IsThatOfWhatLinksAndPairsJoin) {
+  NetworkDescription scene;
+  scene.dimension = 1;
+  for (int i = 0; i < 6; ++i) scene.mats.push_back(mass(1.0, Vec3(i, 0, 0)));
+  scene.mats.push_back(fixed(Vec3(9, 0, 0)));
+  scene.mats[0].velocity = Vec3(2, 0, 0);   // 2 J
+  scene.mats[1].velocity = Vec3(-4, 0, 0);  // 8 J
+  scene.links.push_back({0, 1, 0.0, 1.0, 0.0});
+  scene.links.push_back({3, 6, 1.0, 0.0, 6.0});
+  engine::SetLiaison set;
+  set.set_p = {2, 6};
+  set.set_q = {1, 3};
+  scene.sets.push_back(set);
+  set.set_p = {6};
+  set.set_q = {4, 5};
+  scene.sets.push_back(set);
+  const auto shares = plan::energy_shares(scene, {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0});
+  for (const int mat : {0, 1, 2, 3}) {
+    EXPECT_EQ(shares[mat].of_body, 10.0) << mat;
+    EXPECT_EQ(shares[mat].stored, 15.0) << mat;
+  }
+  EXPECT_EQ(shares[4].of_body, 0.0) << "both touch what is fixed, and not each other";
+  EXPECT_EQ(shares[4].stored, 16.0);
+  EXPECT_EQ(shares[5].stored, 32.0);
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
 #include "node/assert.h"
-#include "node/disjoint_sets.h"
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/bend_slope.h"
 #include "sim_node/plan/stability/drive_extremes.h"
@@ -54,35 +54,6 @@ bool needs_energy(const engine::NetworkDescription& network) {
          std::ranges::any_of(network.sets, needs);
 }
 
-/// The energy with which the two bodies meet that have the most, kinetic and by falling through the scene [J]. A
-/// body is what links join; what is no mass joins nothing.
-double energy_of_bodies(const engine::NetworkDescription& network) {
-  const std::size_t count = network.mats.size();
-  node::DisjointSets bodies(count);
-  const auto is_mass = [&](std::uint32_t mat) {
-    return network.mats[mat].kind == engine::MatKind::kMass;
-  };
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    if (is_mass(a) && is_mass(b)) bodies.join(a, b);
-  };
-  for (const engine::Link& link : network.links) join(link.mat_a, link.mat_b);
-  for (const engine::StateLink& link : network.state_links) join(link.mat_a, link.mat_b);
-  for (const engine::MaxwellLink& link : network.maxwell_links) join(link.mat_a, link.mat_b);
-  for (const engine::Bend& bend : network.bends) {
-    join(bend.mat_a, bend.mat_b);
-    join(bend.mat_b, bend.mat_c);
-  }
-  const double extent = diagonal_of(network);
-  std::vector<double> energy(count, 0.0);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const engine::Mat& mat = network.mats[i];
-    if (!is_mass(i)) continue;
-    energy[bodies.root_of(i)] +=
-        mat.mass * (0.5 * mat.velocity.squaredNorm() + network.gravity_on(mat).norm() * extent);
-  }
-  return 2.0 * std::ranges::max(energy);
-}
-
 /// What the pairs of a set bring in [J].
 struct BroughtBySet {
   double stored = 0.0;  // at the start
@@ -110,42 +81,50 @@ BroughtBySet brought_by_set(const engine::NetworkDescription& network,
   return brought;
 }
 
-/// Stored at the start by the springs of friction [J].
-double stored_by_friction(const engine::NetworkDescription& network,
-                          const engine::SetLiaison& set) {
-  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
-  const double stiffness = friction_in(state_machine, state_machine.start).stiffness;
-  double energy = 0.0;
-  for (const engine::StartStretch& contact : set.stretches) {
-    energy += 0.5 * stiffness * contact.stretch.squaredNorm();
-  }
-  return energy;
+/// The first of two MATs if it is a mass, else the second.
+std::uint32_t mass_of(const engine::NetworkDescription& network, std::uint32_t a, std::uint32_t b) {
+  return network.mats[a].kind == engine::MatKind::kMass ? a : b;
 }
 
-/// Stored by all but links with states and pairs of sets [J].
+/// Adds what the springs of friction store at the start, each at one of its MATs.
+void add_stored_by_friction(const engine::NetworkDescription& network,
+                            const engine::SetLiaison& set, std::vector<double>& stored) {
+  const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
+  const double stiffness = friction_in(state_machine, state_machine.start).stiffness;
+  for (const engine::StartStretch& contact : set.stretches) {
+    const std::uint32_t mat =
+        mass_of(network, mat_of(set, contact.member_a), mat_of(set, contact.member_b));
+    stored[mat] += 0.5 * stiffness * contact.stretch.squaredNorm();
+  }
+}
+
+/// Adds what all but links with states and pairs of sets store, each at one of its MATs: at a mass, if there is one.
 /// @param reach  its variables alone
-double stored_at_start(const engine::NetworkDescription& network, const Reach& reach) {
-  double energy = 0.0;
+void add_stored_at_start(const engine::NetworkDescription& network, const Reach& reach,
+                         std::vector<double>& stored) {
+  const auto at_mass = [&](std::uint32_t a, std::uint32_t b) -> double& {
+    return stored[mass_of(network, a, b)];
+  };
   for (const engine::Link& link : network.links) {
     const double e = distance_at_start(network, link.mat_a, link.mat_b) - link.rest_length;
-    energy += 0.5 * link.stiffness * e * e;
+    at_mass(link.mat_a, link.mat_b) += 0.5 * link.stiffness * e * e;
   }
   for (const engine::MaxwellLink& link : network.maxwell_links) {
     if (link.start_force == 0.0) continue;
     const double softest = linear_bounds(network, link, reach).stiffness.low;
-    energy += 0.5 * link.start_force * link.start_force / softest;
+    at_mass(link.mat_a, link.mat_b) += 0.5 * link.start_force * link.start_force / softest;
   }
   for (const engine::Bend& bend : network.bends) {
-    if (bend.has_states()) energy += brought_by_laws(network, bend);
+    double& here = stored[mass_of(network, mass_of(network, bend.mat_a, bend.mat_b), bend.mat_c)];
+    if (bend.has_states()) here += brought_by_laws(network, bend);
     const double w = engine::bend_at_start(network, bend).norm();
     const double stiffest = linear_bounds(network, bend, reach).stiffness.high;
     if (!std::isfinite(stiffest)) continue;  // then nothing is certain of it
-    energy +=
+    here +=
         0.5 * stiffest *
         (bend.has_states() ? std::max(4.0, w * w) : w * w);  // a change may fold it the other way
   }
-  for (const engine::SetLiaison& set : network.sets) energy += stored_by_friction(network, set);
-  return energy;
+  for (const engine::SetLiaison& set : network.sets) add_stored_by_friction(network, set, stored);
 }
 
 /// Kinetic, and what falling through the scene brings [J].
@@ -302,7 +281,8 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     reach.variables = std::make_shared<const std::vector<Interval>>(std::move(ranges));
   }
   const Reach of_variables = reach;
-  double stored = stored_at_start(network, of_variables);
+  std::vector<double> stored(network.mats.size(), 0.0);
+  add_stored_at_start(network, of_variables, stored);
   reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
   std::uint32_t index = 0;
   BroughtByLinks known;
@@ -314,7 +294,7 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
     if (feeds && !reach.fed) reach.fed = engine::LiaisonId{LiaisonKind::kStateLink, index};
     const double brought = feeds ? 0.0 : known.brought(network, link);
     if (std::isfinite(brought)) {
-      stored += brought;
+      stored[mass_of(network, link.mat_a, link.mat_b)] += brought;
     } else if (!reach.endless) {
       reach.endless = index;
     }
@@ -333,9 +313,12 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.driven = driven;
   reach.pushed = factor * driven * diagonal_of(network);
   reach.force = driven + weight_of(network);
-  reach.stored = factor * stored + reach.pushed;
-  reach.brought = factor * energy_brought(network) + reach.stored;
-  reach.of_bodies = factor * energy_of_bodies(network);
+  const double all_stored = std::accumulate(stored.begin(), stored.end(), 0.0);
+  reach.brought = factor * (energy_brought(network) + all_stored) + reach.pushed;
+  std::vector<EnergyShare> shares = energy_shares(network, stored);
+  for (EnergyShare& share : shares)
+    share = {factor * share.of_body, factor * share.stored + reach.pushed};
+  reach.shares = std::make_shared<const std::vector<EnergyShare>>(std::move(shares));
   reach.counts_sets = needs_energy(network);
   for (const engine::SetLiaison& set : network.sets) {
     if (!reach.counts_sets) break;
@@ -365,13 +348,21 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
     reach.inverse_mass += most;
     return range;
   };
-  if (mats_a.size() == 1 && mats_b.size() == 1) {
-    reach.energy = std::max(reach.energy, reach.brought);
-  } else {
-    reach.energy = std::max(reach.energy, std::min(reach.of_bodies + reach.stored, reach.brought));
-  }
   reach.mass_a = masses(mats_a);
   reach.mass_b = masses(mats_b);
+  EnergyShare share;
+  for (const auto* mats : {&mats_a, &mats_b}) {
+    for (const std::uint32_t mat : *mats) {
+      if (reach.shares == nullptr) continue;
+      const EnergyShare& of_mat = (*reach.shares)[mat];
+      share = {std::max(share.of_body, of_mat.of_body), std::max(share.stored, of_mat.stored)};
+    }
+  }
+  const double moving = reach.mass_a.high > 0.0 && reach.mass_b.high > 0.0 ? 2.0 : 1.0;  // sides
+  const bool are_single = mats_a.size() == 1 && mats_b.size() == 1;
+  const double brought =
+      are_single ? reach.brought : std::min(moving * share.of_body + share.stored, reach.brought);
+  reach.energy = std::max(0.5 * moving * reach.energy, brought);
   return reach;
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim_node/engine/core/liaison_id.h"
 #include "sim_node/engine/description/network.h"
+#include "sim_node/plan/stability/energy_share.h"
 #include "sim_node/plan/stability/program_enclosure.h"
 
 namespace cordis::plan {
@@ -20,12 +21,10 @@ struct Reach {
   double energy = 0.0;      ///< energy with which two MATs approach each other, ports apart [J]
   /// Kinetic and stored at the start, by falling, by laws whose potential falls, and by `pushed` [J].
   double brought = 0.0;
-  double pushed = 0.0;  ///< by driven forces through the scene [J]
-  /// The part of `brought` that one pair may get all of: what liaisons other than sets store, and `pushed` [J].
-  double stored = 0.0;
+  double pushed = 0.0;    ///< by driven forces through the scene [J]
   double in_pairs = 0.0;  ///< the part that the pairs of sets store [J]; 0 unless `counts_sets`
-  /// The energy with which two bodies meet, of masses that links join: kinetic and by falling [J].
-  double of_bodies = 0.0;
+  /// Of each MAT the part of `brought` that may come to it, but for what pairs of sets store. It has `pushed` in it. Null: nothing.
+  std::shared_ptr<const std::vector<EnergyShare>> shares = {};
   Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
   bool counts_sets = false;   ///< what sets store at the start is in `brought`
@@ -61,7 +60,7 @@ Interval range_of_variable(const engine::NetworkDescription& network,
                            const engine::Variable& variable);
 
 /// The reach of a liaison between one of some MATs and one of others. A pair of single MATs may get all the energy
-/// there is; one of many that of two bodies and all that is stored, but no more than there is.
+/// there is. One of many gets its share: of two bodies, or of one where a side has no masses, and all that is stored.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,
                     const std::vector<std::uint32_t>& mats_a,
                     const std::vector<std::uint32_t>& mats_b);

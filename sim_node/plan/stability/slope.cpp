@@ -39,7 +39,7 @@ constexpr const char* kPullsWhereNormalFlips =
     "it may pull within the surface, where the normal flips";
 constexpr const char* kActsOnAxis =
     "it acts on the axis of a hollow cylinder, where the normal flips";
-constexpr double kNeverPassed = 1e4;  // energies of the fastest ball
+constexpr double kNeverPassed = 1e4;  // energies of a ball
 constexpr const char* kConfinesNothing = "its expression grows steeper, and no energy confines it";
 
 bool is_jump(const engine::Law& law) {
@@ -459,7 +459,8 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
   const bool rest_moves = moves_rest(state_machine);
   const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
   const double pressed = reach.driven * std::max(rest_length - flips_at, 0.0);
-  const double energy = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed + pressed;
+  const double fastest = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed;
+  const double energy = std::max(fastest, approach_energy(reach)) + pressed;
   for (const engine::LinkState& state : state_machine.states) {
     const Flip flip = flip_of(state, rest_length, flips_at, rest_moves, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;

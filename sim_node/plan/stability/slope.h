@@ -68,7 +68,8 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 /// around a cylinder, and its normal flips where two nearest points are equally far.
 /// @param flips_at  the largest distance at which it flips [m], at most 0: 0 at the corner of a box;
 /// -infinity where it never does
-/// Certain where nothing pulls there, and a ball at the speed of the reach does not come there.
+/// Certain where nothing pulls there, and a ball does not come there: not at the speed of the reach, nor with its
+/// energy.
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 

@@ -1,0 +1,24 @@
+// sim_node/plan/stability/energy_share.h -- the part of the energy of a scene that may come to one mass.
+#pragma once
+
+#include <vector>
+
+#include "sim_node/engine/description/network.h"
+
+namespace cordis::plan {
+
+/// What liaisons may lead to one mass.
+struct EnergyShare {
+  /// What the body has that has the most, of masses that links join: kinetic and by falling through the scene [J].
+  double of_body = 0.0;
+  double stored = 0.0;  ///< [J]
+};
+
+/// The share of each MAT: of all masses that links join with it, and pairs of sets, directly or by others. What is no
+/// mass joins nothing, so that balls which only touch walls have their own energy alone. O(MATs and liaisons).
+/// Allocates.
+/// @param stored  in the liaisons at each MAT, each counted at one of its ends [J]
+std::vector<EnergyShare> energy_shares(const engine::NetworkDescription& network,
+                                       const std::vector<double>& stored);
+
+}  // namespace cordis::plan
