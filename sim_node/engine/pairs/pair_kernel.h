@@ -184,6 +184,21 @@ struct LinearPair {
 using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
                              const double* rest, double* factor, double* viscous_factor) noexcept;
 
+/// Contacts of a set that are all that there is between its members.
+struct LinearContacts {
+  LinearPair pair;
+  double range_square = 0.0;       // [m^2]
+  double rest_length = 0.0;        // [m]; not used with radii
+  const double* radius = nullptr;  // of each member [m]; null: all pairs have the rest length
+  PartnerShare share;
+};
+
+/// Gathers the rows, finds the forces and spreads them, with the bits of MeasurePairs, LinearPairs and SpreadRows.
+/// @param viscous  what the part of the force that stores no energy is added to; null: nothing
+using LinearRows = void (*)(const LinearContacts& contacts, const MemberColumns& members,
+                            const NeighbourRows& rows, const PairRow& row, double* force,
+                            double* viscous) noexcept;
+
 /// Friction, made ready for the contacts of a set.
 struct FrictionTerm {
   double stiffness = 0.0;            // [N/m]
@@ -277,6 +292,7 @@ struct PairKernel {
   MeasurePairs measure_pairs = nullptr;
   SpreadRows spread_rows = nullptr;
   LinearPairs linear_pairs = nullptr;
+  LinearRows linear_rows = nullptr;
   FrictionPairs friction_pairs = nullptr;
   SpreadVectors spread_vectors = nullptr;
   LennardJonesRows lennard_jones_rows = nullptr;

@@ -204,6 +204,22 @@ std::size_t gather_row(const MemberColumns& members, std::size_t a, const std::u
 }
 
 template <class Lanes>
+typename Lanes::Row dot(const typename Lanes::Row3& u, const typename Lanes::Row3& v) noexcept {
+  return u.x * v.x + u.y * v.y + u.z * v.z;
+}
+
+template <class Lanes>
+typename Lanes::Row3 scaled(const typename Lanes::Row3& v, typename Lanes::Row factor) noexcept {
+  return {v.x * factor, v.y * factor, v.z * factor};
+}
+
+/// A vector in all lanes.
+template <class Lanes>
+typename Lanes::Row3 every(const double* vector) noexcept {
+  return {Lanes::every(vector[0]), Lanes::every(vector[1]), Lanes::every(vector[2])};
+}
+
+template <class Lanes>
 void measure_pairs(const MemberColumns& members, const PairRows& rows) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
@@ -253,20 +269,33 @@ typename Lanes::Row less_one(typename Lanes::Mask mask) noexcept {
   return Lanes::select(mask, Lanes::every(-1.0), Lanes::zero());
 }
 
-/// @param touching  the pairs that count as partners
+/// Takes a register of forces from the second ends of its pairs, and adds them to the sum.
+/// @param column   of the second ends
+/// @param partner  less what each counts for as a partner
 template <class Lanes>
-void spread(const PairRow& row, std::size_t i, typename Lanes::Row factor,
-            typename Lanes::Mask touching, double* force, RowSum<Lanes>& sum,
-            std::size_t part) noexcept {
-  using Row3 = typename Lanes::Row3;
-  const typename Lanes::Row partner = less_one<Lanes>(touching);
-  const Row3 tension{Lanes::load(row.x + i) * factor, Lanes::load(row.y + i) * factor,
-                     Lanes::load(row.z + i) * factor};
+void spread_register(const std::uint32_t* column, const typename Lanes::Row3& tension,
+                     typename Lanes::Row partner, double* force, RowSum<Lanes>& sum,
+                     std::size_t part) noexcept {
   sum.x[part] = sum.x[part] + tension.x;
   sum.y[part] = sum.y[part] + tension.y;
   sum.z[part] = sum.z[part] + tension.z;
   sum.partners[part] = sum.partners[part] + partner;
-  Lanes::subtract(force, row.column + i, tension, partner);
+  Lanes::subtract(force, column, tension, partner);
+}
+
+/// Less what pairs count for as partners: nothing where the factor is 0.
+template <class Lanes>
+typename Lanes::Row less_share(const PartnerShare& share, typename Lanes::Row length,
+                               typename Lanes::Row factor) noexcept {
+  const auto near = Lanes::less(length, Lanes::every(share.near));
+  const auto counted = Lanes::select(near, Lanes::every(-1.0), Lanes::every(-share.beyond));
+  return Lanes::select(Lanes::not_equal(factor, Lanes::zero()), counted, Lanes::zero());
+}
+
+/// From a to b.
+template <class Lanes>
+typename Lanes::Row3 vectors_of(const PairRow& row, std::size_t i) noexcept {
+  return {Lanes::load(row.x + i), Lanes::load(row.y + i), Lanes::load(row.z + i)};
 }
 
 /// Adds the sums to a column.
@@ -290,10 +319,8 @@ void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const d
                  std::size_t part) noexcept {
   using Row = typename Lanes::Row;
   const PairRow& row = rows.pairs;
-  const Row factor = Lanes::load_any(factors + i);
-  const auto near = Lanes::less(Lanes::load_any(row.length + i), Lanes::every(rows.share.near));
-  const Row share = Lanes::select(near, Lanes::every(-1.0), Lanes::every(-rows.share.beyond));
-  Row partner = Lanes::select(Lanes::not_equal(factor, Lanes::zero()), share, Lanes::zero());
+  Row partner =
+      less_share<Lanes>(rows.share, Lanes::load_any(row.length + i), Lanes::load_any(factors + i));
   if (count < Lanes::kWidth) {
     const auto own =
         Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
@@ -302,11 +329,7 @@ void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const d
     tension.z = Lanes::select(own, tension.z, Lanes::zero());
     partner = Lanes::select(own, partner, Lanes::zero());
   }
-  sum.x[part] = sum.x[part] + tension.x;
-  sum.y[part] = sum.y[part] + tension.y;
-  sum.z[part] = sum.z[part] + tension.z;
-  sum.partners[part] = sum.partners[part] + partner;
-  Lanes::subtract(force, row.column + i, tension, partner);
+  spread_register<Lanes>(row.column + i, tension, partner, force, sum, part);
 }
 
 /// factor * (vector from a to b), of pairs that begin anywhere.
@@ -355,34 +378,41 @@ void spread_vectors(const PairRows& rows, const double* factor, const FrictionRo
   });
 }
 
+/// A LinearPair in all lanes.
+template <class Lanes>
+struct LinearLanes {
+  using Row = typename Lanes::Row;
+
+  explicit LinearLanes(const LinearPair& pair) noexcept
+      : stiffness(Lanes::every(pair.stiffness)),
+        viscosity(Lanes::every(pair.viscosity_over_dt)),
+        min_tension(Lanes::every(pair.min_tension)),
+        max_tension(Lanes::every(pair.max_tension)) {}
+
+  Row limited(Row tension) const noexcept {
+    return Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
+  }
+
+  Row stiffness;
+  Row viscosity;
+  Row min_tension;
+  Row max_tension;
+};
+
 template <class Lanes>
 void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count, const double* rest,
                   double* factor, double* viscous_factor) noexcept {
   using Row = typename Lanes::Row;
-  const Row stiffness = Lanes::every(pair.stiffness);
-  const Row viscosity = Lanes::every(pair.viscosity_over_dt);
-  const Row min_tension = Lanes::every(pair.min_tension);
-  const Row max_tension = Lanes::every(pair.max_tension);
+  const LinearLanes<Lanes> contact(pair);
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
-    const Row elastic = stiffness * elongation;
-    const Row tension = elastic + viscosity * Lanes::load(row.elongation_increment + i);
-    const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
-    const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
+    const Row elastic = contact.stiffness * elongation;
+    const Row tension = elastic + contact.viscosity * Lanes::load(row.elongation_increment + i);
+    const Row limited = contact.limited(tension);
     Lanes::store(factor + i, limited * inverse);
-    Lanes::store(viscous_factor + i, (limited - stored) * inverse);
+    Lanes::store(viscous_factor + i, (limited - contact.limited(elastic)) * inverse);
   }
-}
-
-template <class Lanes>
-typename Lanes::Row dot(const typename Lanes::Row3& u, const typename Lanes::Row3& v) noexcept {
-  return u.x * v.x + u.y * v.y + u.z * v.z;
-}
-
-template <class Lanes>
-typename Lanes::Row3 scaled(const typename Lanes::Row3& v, typename Lanes::Row factor) noexcept {
-  return {v.x * factor, v.y * factor, v.z * factor};
 }
 
 /// Adds the works of a batch of members, each of them to the sum of its place.
@@ -561,6 +591,15 @@ void friction_pairs(const FrictionTerms& terms, const MemberColumns& members, co
   }
 }
 
+/// Those of a register of pairs that are from MemberColumns::end on give their force to padding.
+template <class Lanes>
+void redirect_pairs(const MemberColumns& members, std::size_t first, const PairRow& row) noexcept {
+  for (std::size_t i = first; i < first + Lanes::kWidth; ++i) {
+    if (row.column[i] >= members.end)
+      row.column[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
+  }
+}
+
 /// The pairs of a row from MemberColumns::end on give their force to padding. Pairs ascend in a row.
 template <class Lanes>
 void redirect_row(const MemberColumns& members, std::size_t count, const PairRow& row) noexcept {
@@ -587,7 +626,9 @@ template <class Lanes>
       const Row factor = LennardJones::tension_per_distance<Lanes>(attraction, repulsion, square);
       const auto touching =
           Lanes::both(Lanes::less(square, touch_square), Lanes::not_equal(square, Lanes::zero()));
-      spread<Lanes>(row, first, factor, touching, force, sum, part);
+      spread_register<Lanes>(row.column + first,
+                             scaled<Lanes>(vectors_of<Lanes>(row, first), factor),
+                             less_one<Lanes>(touching), force, sum, part);
     }
   }
 }
@@ -618,6 +659,84 @@ void lennard_jones_parts(const LennardJonesPair& pair, const MemberColumns& memb
     RowSum<Lanes> unused = no_force<Lanes>();
     lennard_jones_row<Lanes>(pair, row, count, force, unused);
   }
+}
+
+/// Finds the forces of a register of pairs of a padded row, and spreads them.
+template <class Lanes, bool kViscous>
+[[gnu::always_inline]] inline void spread_contacts(
+    const LinearContacts& contacts, const LinearLanes<Lanes>& contact, const MemberColumns& members,
+    const PairRow& row, std::size_t first, typename Lanes::Row rest_length,
+    const typename Lanes::Row3& own_way, double* force, double* viscous, RowSum<Lanes>& sum,
+    RowSum<Lanes>& viscous_sum, std::size_t part) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const Row square = Lanes::load(row.square + first);
+  const Row length = Lanes::sqrt(square);
+  const Row inverse = Lanes::inverse_or_zero(square, length);
+  const Row3 vector = vectors_of<Lanes>(row, first);
+  const Row3 way = Lanes::vectors(members.moved, row.column + first);
+  const Row along = dot<Lanes>(vector, {way.x - own_way.x, way.y - own_way.y, way.z - own_way.z});
+  const Row elastic = contact.stiffness * (length - rest_length);
+  const Row limited = contact.limited(elastic + contact.viscosity * (along * inverse));
+  const Row factor = limited * inverse;
+  if (members.end != kNoColumn) redirect_pairs<Lanes>(members, first, row);
+  spread_register<Lanes>(row.column + first, scaled<Lanes>(vector, factor),
+                         less_share<Lanes>(contacts.share, length, factor), force, sum, part);
+  if constexpr (kViscous) {
+    const Row lost = (limited - contact.limited(elastic)) * inverse;
+    spread_register<Lanes>(row.column + first, scaled<Lanes>(vector, lost),
+                           less_share<Lanes>(contacts.share, length, lost), viscous, viscous_sum,
+                           part);
+  }
+}
+
+template <class Lanes, bool kViscous>
+void rows_of_contacts(const LinearContacts& contacts, const MemberColumns& members,
+                      const NeighbourRows& rows, const PairRow& all, double* force,
+                      double* viscous) noexcept {
+  const PairRow row = all;
+  const LinearLanes<Lanes> contact(contacts.pair);
+  const double* const radius = contacts.radius;
+  double* const rest = row.length;  // room, for lengths stay in registers
+  for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
+    const std::size_t candidates = rows.start[a + 1] - rows.start[a];
+    const std::size_t count =
+        gather_pairs<Lanes>(members, a, neighbour, candidates, contacts.range_square, row);
+    if (count == 0) continue;  // no sum that is added changes a bit
+    pad_row<Lanes>(members, count, row);
+    if (radius != nullptr) {
+      for (std::size_t i = 0; i < count; ++i) rest[i] = radius[a] + radius[row.column[i] / 4];
+      for (std::size_t i = count; i % kPairBatch != 0; ++i) rest[i] = 0.0;
+    }
+    const double* const moved = members.moved + 4 * a;
+    const auto own_way = every<Lanes>(moved);
+    RowSum<Lanes> sum = no_force<Lanes>();
+    RowSum<Lanes> viscous_sum = no_force<Lanes>();
+    for (std::size_t i = 0; i < count; i += kPairBatch) {
+#pragma GCC unroll 4
+      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
+        const std::size_t first = i + part * Lanes::kWidth;
+        if (first >= count) break;  // padding gives nothing
+        const auto rest_length =
+            radius == nullptr ? Lanes::every(contacts.rest_length) : Lanes::load(rest + first);
+        spread_contacts<Lanes, kViscous>(contacts, contact, members, row, first, rest_length,
+                                         own_way, force, viscous, sum, viscous_sum, part);
+      }
+    }
+    give<Lanes>(sum, force + 4 * a);
+    if constexpr (kViscous) give<Lanes>(viscous_sum, viscous + 4 * a);
+  }
+}
+
+template <class Lanes>
+void linear_rows(const LinearContacts& contacts, const MemberColumns& members,
+                 const NeighbourRows& rows, const PairRow& row, double* force,
+                 double* viscous) noexcept {
+  if (viscous == nullptr)
+    rows_of_contacts<Lanes, false>(contacts, members, rows, row, force, viscous);
+  else
+    rows_of_contacts<Lanes, true>(contacts, members, rows, row, force, viscous);
 }
 
 template <class Lanes>

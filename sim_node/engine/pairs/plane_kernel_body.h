@@ -10,12 +10,6 @@
 
 namespace cordis::engine {
 
-/// A vector in all lanes.
-template <class Lanes>
-typename Lanes::Row3 every(const double* vector) noexcept {
-  return {Lanes::every(vector[0]), Lanes::every(vector[1]), Lanes::every(vector[2])};
-}
-
 /// The vectors of the lanes of a mask, 0 in the others.
 template <class Lanes>
 typename Lanes::Row3 only(typename Lanes::Mask mask, const typename Lanes::Row3& v) noexcept {
