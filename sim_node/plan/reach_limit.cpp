@@ -203,8 +203,10 @@ ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph
     const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
     if (contact.bounded || is_of_balls(state_machine)) continue;
     const Reach here = reach_between(graph.reach, network, contact.members, contact.others);
-    const double energy =
-        energy_followed(state_machine, std::max(set.rest_length, 0.0), turns, here);
+    const double barrier =
+        largest_slope_of(network, set, set_start_of(network, set, graph.reach)).barrier;
+    const double energy = std::min(
+        barrier, energy_followed(state_machine, std::max(set.rest_length, 0.0), turns, here));
     if (limit.pairs.empty() || limit.pairs.back().set != contact.set)
       limit.pairs.push_back({contact.set, energy});
     limit.pairs.back().energy = std::min(limit.pairs.back().energy, energy);

@@ -122,14 +122,18 @@ TEST(Reach, BetweenGroupsHasTheEnergyOfTwoBodiesAndAllThatLinksStore) {
     scene.mats.push_back(mass(2.0, Vec3(0.3 * i, 4, 0)));
     scene.mats[i].velocity = Vec3(3, 0, 0);
   }
+  engine::SetLiaison set;
+  set.set_p = {0, 1, 2};
+  set.set_q = {3, 4};
+  scene.sets.push_back(set);
   const auto energy_of = [&] {
-    return plan::reach_between(reach_of(scene), scene, {0, 1, 2}, {3, 4}).energy;
+    return plan::reach_between(reach_of(scene), scene, set.set_p, set.set_q).energy;
   };
   EXPECT_NEAR(energy_of(), 2.0 * kMotion, 1e-9) << "each is a body of its own";
   scene.links.push_back({2, 3, 0.0, 1.0, 0.0});
-  EXPECT_NEAR(energy_of(), 4.0 * kMotion, 1e-9) << "a body of two";
+  EXPECT_NEAR(energy_of(), 3.0 * kMotion, 1e-9) << "a body of two and one of one";
   scene.links.push_back({0, 1, 1000.0, 0.0, 4.9});
-  EXPECT_NEAR(energy_of(), 4.0 * kMotion + 5.0, 1e-9) << "and a spring";
+  EXPECT_NEAR(energy_of(), 3.0 * kMotion + 5.0, 1e-9) << "and a spring";
 }
 
 TEST(EnergyShare, IsThatOfWhatLinksAndPairsJoin) {
@@ -137,8 +141,10 @@ TEST(EnergyShare, IsThatOfWhatLinksAndPairsJoin) {
   scene.dimension = 1;
   for (int i = 0; i < 6; ++i) scene.mats.push_back(mass(1.0, Vec3(i, 0, 0)));
   scene.mats.push_back(fixed(Vec3(9, 0, 0)));
+  scene.mats.push_back({engine::MatKind::kPort, 0.0, Vec3(8, 0, 0)});
   scene.mats[0].velocity = Vec3(2, 0, 0);   // 2 J
   scene.mats[1].velocity = Vec3(-4, 0, 0);  // 8 J
+  scene.mats[2].velocity = Vec3(1, 0, 0);   // 0.5 J
   scene.links.push_back({0, 1, 0.0, 1.0, 0.0});
   scene.links.push_back({3, 6, 1.0, 0.0, 6.0});
   engine::SetLiaison set;
@@ -148,14 +154,22 @@ TEST(EnergyShare, IsThatOfWhatLinksAndPairsJoin) {
   set.set_p = {6};
   set.set_q = {4, 5};
   scene.sets.push_back(set);
-  const auto shares = plan::energy_shares(scene, {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0});
+  set.set_p = {7};
+  set.set_q = {5};
+  scene.sets.push_back(set);
+
+  const auto shares =
+      plan::energy_shares(scene, {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0}, /*port_speed=*/3.0);
+
   for (const int mat : {0, 1, 2, 3}) {
-    EXPECT_EQ(shares[mat].of_body, 10.0) << mat;
+    EXPECT_EQ(shares[mat].of_bodies, 10.5) << mat;
     EXPECT_EQ(shares[mat].stored, 15.0) << mat;
+    EXPECT_EQ(shares[mat].struck, 0.0) << mat;
   }
-  EXPECT_EQ(shares[4].of_body, 0.0) << "both touch what is fixed, and not each other";
+  EXPECT_EQ(shares[4].of_bodies, 0.0) << "both touch what is fixed, and not each other";
   EXPECT_EQ(shares[4].stored, 16.0);
   EXPECT_EQ(shares[5].stored, 32.0);
+  EXPECT_EQ(shares[5].struck, 18.0) << "at twice the speed of the port";
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "sim_node/plan/plan.h"
 #include "sim_node/plan/rate.h"
+#include "sim_node/plan/reach_limit.h"
 #include "sim_node/plan/reference/reference_integrator.h"
 #include "sim_node/plan/stability/liaison_graph.h"
 #include "sim_node/plan/stability/partner_bound.h"
@@ -390,6 +391,20 @@ TEST(SurfaceBound, IsNotCertainWhereASpringThrowsABallThroughAWall) {
   };
   EXPECT_TRUE(holds(0.015));
   EXPECT_FALSE(holds(0.025));
+}
+
+TEST(SurfaceBound, WatchesTheEnergyThatABallPassesAWallWith) {
+  NetworkDescription scene = balls_above_a_wall();
+  scene.mats[0].velocity = Vec3(0.0, -1.0, 0.0);
+  ASSERT_TRUE(is_certain(scene));
+  const plan::ReachLimit limit = plan::reach_limit(scene);
+  ASSERT_EQ(limit.pairs.size(), 1u);
+  EXPECT_NEAR(limit.pairs[0].energy, 0.02, 1e-3);
+  for (const double speed : {1.9, 2.1}) {
+    scene.mats[0].velocity = Vec3(0.0, -speed, 0.0);
+    const World world = make_world(scene);
+    EXPECT_EQ(plan::is_beyond(limit, world, world.energy()), speed > 2.0) << speed;
+  }
 }
 
 /// A ball is thrown at a thin wall: by its speed, by its weight, by a spring.

@@ -15,18 +15,27 @@ bool is_mass(const engine::NetworkDescription& network, std::uint32_t mat) {
   return network.mats[mat].kind == engine::MatKind::kMass;
 }
 
+bool is_port(const engine::NetworkDescription& network, std::uint32_t mat) {
+  return network.mats[mat].kind == engine::MatKind::kPort;
+}
+
+/// Calls visit(a, b) for the ends of each link, Maxwell element and side of a bend.
+template <class Visit>
+void visit_links(const engine::NetworkDescription& network, Visit visit) {
+  for (const engine::Link& link : network.links) visit(link.mat_a, link.mat_b);
+  for (const engine::StateLink& link : network.state_links) visit(link.mat_a, link.mat_b);
+  for (const engine::MaxwellLink& link : network.maxwell_links) visit(link.mat_a, link.mat_b);
+  for (const engine::Bend& bend : network.bends) {
+    visit(bend.mat_a, bend.mat_b);
+    visit(bend.mat_b, bend.mat_c);
+  }
+}
+
 node::DisjointSets bodies_of(const engine::NetworkDescription& network) {
   node::DisjointSets bodies(network.mats.size());
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+  visit_links(network, [&](std::uint32_t a, std::uint32_t b) {
     if (is_mass(network, a) && is_mass(network, b)) bodies.join(a, b);
-  };
-  for (const engine::Link& link : network.links) join(link.mat_a, link.mat_b);
-  for (const engine::StateLink& link : network.state_links) join(link.mat_a, link.mat_b);
-  for (const engine::MaxwellLink& link : network.maxwell_links) join(link.mat_a, link.mat_b);
-  for (const engine::Bend& bend : network.bends) {
-    join(bend.mat_a, bend.mat_b);
-    join(bend.mat_b, bend.mat_c);
-  }
+  });
   return bodies;
 }
 
@@ -46,30 +55,68 @@ void join_pairs(const engine::NetworkDescription& network, node::DisjointSets& g
   }
 }
 
+/// Marks the masses that ports or driven matter act on.
+std::vector<bool> struck_masses(const engine::NetworkDescription& network) {
+  std::vector<bool> struck(network.mats.size(), false);
+  const auto strike = [&](std::uint32_t a, std::uint32_t b) {
+    if (is_port(network, a)) struck[b] = true;
+    if (is_port(network, b)) struck[a] = true;
+  };
+  visit_links(network, strike);
+  for (const engine::SetLiaison& set : network.sets) {
+    const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
+    const auto strikes = [&](std::uint32_t mat) { return is_port(network, mat); };
+    if (std::ranges::any_of(set.set_p, strikes))
+      for (const std::uint32_t mat : others) struck[mat] = true;
+    if (std::ranges::any_of(others, strikes))
+      for (const std::uint32_t mat : set.set_p) struck[mat] = true;
+  }
+  return struck;
+}
+
+/// What a group of bodies has.
+struct Group {
+  double first = 0.0;   // of the richest body [J]
+  double second = 0.0;  // of the next one
+  double struck = 0.0;  // that a port gives to a body at most [J]
+  double stored = 0.0;  // [J]
+};
+
 }  // namespace
 
 std::vector<EnergyShare> energy_shares(const engine::NetworkDescription& network,
-                                       const std::vector<double>& stored) {
+                                       const std::vector<double>& stored, double port_speed) {
   CORDIS_ASSERT(stored.size() == network.mats.size());
   const auto count = static_cast<std::uint32_t>(network.mats.size());
   const double extent = diagonal_of(network);
   node::DisjointSets bodies = bodies_of(network);
   std::vector<double> moving(count, 0.0);  // of the body whose root this is
+  std::vector<double> mass(count, 0.0);    // likewise
   for (std::uint32_t i = 0; i < count; ++i) {
     const engine::Mat& mat = network.mats[i];
     if (!is_mass(network, i)) continue;
+    mass[bodies.root_of(i)] += mat.mass;
     moving[bodies.root_of(i)] +=
         mat.mass * (0.5 * mat.velocity.squaredNorm() + network.gravity_on(mat).norm() * extent);
   }
   node::DisjointSets groups = bodies;
   join_pairs(network, groups);
+  const std::vector<bool> struck = struck_masses(network);
+  std::vector<Group> of(count);  // by root
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Group& group = of[groups.root_of(i)];
+    group.second = std::max(group.second, std::min(group.first, moving[i]));
+    group.first = std::max(group.first, moving[i]);
+    group.stored += stored[i];
+    if (struck[i] && is_mass(network, i))
+      group.struck =
+          std::max(group.struck, 2.0 * mass[bodies.root_of(i)] * port_speed * port_speed);
+  }
   std::vector<EnergyShare> shares(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    EnergyShare& share = shares[groups.root_of(i)];
-    share.of_body = std::max(share.of_body, moving[i]);
-    share.stored += stored[i];
+    const Group& group = of[groups.root_of(i)];
+    shares[i] = {group.first + group.second, group.stored, group.struck};
   }
-  for (std::uint32_t i = 0; i < count; ++i) shares[i] = shares[groups.root_of(i)];
   return shares;
 }
 

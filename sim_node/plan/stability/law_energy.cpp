@@ -195,11 +195,21 @@ double brought_by_pair(const engine::NetworkDescription& network, const engine::
   if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity)) {
     return balls->well_depth;
   }
-  if (never_falls(state.elasticity)) return 0.0;
+  const bool has_force = state.stiffness > 0.0 || !is_none(state.elasticity);
+  const bool pulls_in =
+      state.pulls && has_force && set.range > rest_length;  // what comes into range
+  if (never_falls(state.elasticity) && !pulls_in) return 0.0;
   double lowest = network.dimension > 1 ? 0.0 : -set.range;
   if (engine::acts_on_surfaces(network, set)) lowest = -kEndless;
   return fall_of(state, rest_length, {std::min(nearest, set.range), set.range, lowest, set.range},
                  reach);
+}
+
+double brought_by_pairs(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+                        double nearest, double rest_length, const Reach& reach) {
+  const double fall = brought_by_pair(network, set, nearest, rest_length, reach);
+  if (!std::isfinite(fall)) return 0.0;
+  return fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
 }
 
 bool drives_apart(const engine::LinkState& state, double rest_length, bool turns,

@@ -33,6 +33,10 @@ double brought_by(const engine::NetworkDescription& network, const engine::State
 double brought_by_pair(const engine::NetworkDescription& network, const engine::SetLiaison& set,
                        double nearest, double rest_length, const Reach& reach);
 
+/// What all pairs of a set bring in likewise, each of its members in one pair [J]; 0 where that has no end.
+double brought_by_pairs(const engine::NetworkDescription& network, const engine::SetLiaison& set,
+                        double nearest, double rest_length, const Reach& reach);
+
 /// True if a state drives its ends apart with a force that grows with the distance.
 bool drives_apart(const engine::LinkState& state, double rest_length, bool turns,
                   const Reach& reach);

@@ -14,6 +14,7 @@
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/parameter_bounds.h"
+#include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
@@ -33,7 +34,8 @@ double weight_of(const engine::NetworkDescription& network) {
   return weight;
 }
 
-/// True if a link, a bend or a set has a law that the energy of the scene may have to bound.
+/// True if a link, a bend or a set has a law that the energy of the scene may have to bound, or surfaces that a ball
+/// may pass.
 bool needs_energy(const engine::NetworkDescription& network) {
   const auto is_free = [](const engine::Law& law) {
     return std::holds_alternative<engine::Power>(law) ||
@@ -46,18 +48,22 @@ bool needs_energy(const engine::NetworkDescription& network) {
                                  return is_free(state.elasticity) || is_free(state.dissipation);
                                });
   };
+  const auto may_be_passed = [&](const engine::SetLiaison& set) {
+    return engine::acts_on_surfaces(network, set) && std::isfinite(flips_at(network, set));
+  };
   const auto needs_of_bend = [&](const engine::Bend& bend) {
     return bend.has_states() && has_laws_of_bends(network.state_machines[bend.state_machine]);
   };
   return std::ranges::any_of(network.state_links, needs) ||
          std::ranges::any_of(network.bends, needs_of_bend) ||
-         std::ranges::any_of(network.sets, needs);
+         std::ranges::any_of(network.sets, needs) ||
+         std::ranges::any_of(network.sets, may_be_passed);
 }
 
 /// What the pairs of a set bring in [J].
 struct BroughtBySet {
   double stored = 0.0;  // at the start
-  double fall = 0.0;    // what its members can gain, each in one pair
+  double fall = 0.0;    // see brought_by_pairs()
 };
 
 BroughtBySet brought_by_set(const engine::NetworkDescription& network,
@@ -68,16 +74,12 @@ BroughtBySet brought_by_set(const engine::NetworkDescription& network,
       reach_between(reach, network, set.set_p, set.set_q.empty() ? set.set_p : set.set_q);
   BroughtBySet brought;
   double nearest = set.range;
-  double rest = std::max(set.rest_length, 0.0);
   for (const StartPair& pair : near.pairs()) {
     const engine::LawPoint point = start_point(network, set, pair);
     brought.stored += max_stored_in(state_machine, point, of_masses);
     nearest = std::min(nearest, pair.distance);
-    rest = point.distance - point.elongation;
   }
-  const double fall = brought_by_pair(network, set, nearest, rest, of_masses);
-  if (std::isfinite(fall))
-    brought.fall = fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
+  brought.fall = brought_by_pairs(network, set, nearest, smallest_rest_of(network, set), of_masses);
   return brought;
 }
 
@@ -167,6 +169,29 @@ double terminal_speed(const engine::LinkState& state, double force) {
     if (std::min(holds(speed), holds(-speed)) >= force) break;
   }
   return speed;
+}
+
+/// How far a surface reaches from its centre along each axis, where it has an end [m].
+engine::Vec3 extent_of(const engine::Surface& surface) {
+  const auto if_finite = [](double extent) { return std::isfinite(extent) ? extent : 0.0; };
+  const engine::Vec3& half = surface.half_size;
+  switch (surface.kind) {
+    case engine::SurfaceKind::kBox:
+    case engine::SurfaceKind::kBoxFace:
+      return half.unaryExpr(if_finite);
+    case engine::SurfaceKind::kCylinder:
+    case engine::SurfaceKind::kCylinderWall:
+    case engine::SurfaceKind::kCylinderEnd: {
+      const engine::Vec3 across =
+          (1.0 - surface.axis.array().square()).max(0.0).sqrt().matrix() * if_finite(half[0]);
+      return across + surface.axis.cwiseAbs() * if_finite(half[1]);
+    }
+    case engine::SurfaceKind::kSegment:
+      return surface.axis.cwiseAbs() * if_finite(half[0]);
+    case engine::SurfaceKind::kPlane:
+      break;
+  }
+  return engine::Vec3::Zero();
 }
 
 /// What links with states bring in: found once for all that are alike but for rounding.
@@ -269,11 +294,17 @@ double diagonal_of(const engine::NetworkDescription& network) {
     lowest = lowest.cwiseMin(mat.position);
     highest = highest.cwiseMax(mat.position);
   }
+  for (const engine::Surface& surface : network.surfaces) {
+    const engine::Vec3 extent = extent_of(surface);
+    lowest = lowest.cwiseMin(network.mats[surface.mat].position - extent);
+    highest = highest.cwiseMax(network.mats[surface.mat].position + extent);
+  }
   return (highest - lowest).norm();
 }
 
 Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
+  reach.factor = factor;
   if (std::ranges::any_of(network.state_machines, engine::laws_ask_for_variable)) {
     std::vector<Interval> ranges;
     for (const engine::Variable& variable : network.variables)
@@ -283,7 +314,8 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   const Reach of_variables = reach;
   std::vector<double> stored(network.mats.size(), 0.0);
   add_stored_at_start(network, of_variables, stored);
-  reach.speed = std::max(kMinSpeed, largest_drive_speed(network));
+  const double port_speed = std::max(kMinSpeed, largest_drive_speed(network));
+  reach.speed = port_speed;
   std::uint32_t index = 0;
   BroughtByLinks known;
   for (const engine::StateLink& link : network.state_links) {
@@ -315,15 +347,17 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.force = driven + weight_of(network);
   const double all_stored = std::accumulate(stored.begin(), stored.end(), 0.0);
   reach.brought = factor * (energy_brought(network) + all_stored) + reach.pushed;
-  std::vector<EnergyShare> shares = energy_shares(network, stored);
-  for (EnergyShare& share : shares)
-    share = {factor * share.of_body, factor * share.stored + reach.pushed};
+  std::vector<EnergyShare> shares = energy_shares(network, stored, port_speed);
+  for (EnergyShare& share : shares) {
+    share = {factor * share.of_bodies, factor * share.stored + reach.pushed, factor * share.struck};
+  }
   reach.shares = std::make_shared<const std::vector<EnergyShare>>(std::move(shares));
   reach.counts_sets = needs_energy(network);
   for (const engine::SetLiaison& set : network.sets) {
     if (!reach.counts_sets) break;
     const BroughtBySet brought = brought_by_set(network, set, of_variables);
     reach.in_pairs += factor * brought.stored;
+    reach.falls += factor * brought.fall;
     reach.brought += factor * (brought.stored + brought.fall);
   }
   reach.energy *= factor;
@@ -355,14 +389,16 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
     for (const std::uint32_t mat : *mats) {
       if (reach.shares == nullptr) continue;
       const EnergyShare& of_mat = (*reach.shares)[mat];
-      share = {std::max(share.of_body, of_mat.of_body), std::max(share.stored, of_mat.stored)};
+      share = {std::max(share.of_bodies, of_mat.of_bodies), std::max(share.stored, of_mat.stored),
+               std::max(share.struck, of_mat.struck)};
     }
   }
-  const double moving = reach.mass_a.high > 0.0 && reach.mass_b.high > 0.0 ? 2.0 : 1.0;  // sides
+  if (reach.shares == nullptr) return reach;
   const bool are_single = mats_a.size() == 1 && mats_b.size() == 1;
-  const double brought =
-      are_single ? reach.brought : std::min(moving * share.of_body + share.stored, reach.brought);
-  reach.energy = std::max(0.5 * moving * reach.energy, brought);
+  reach.energy =
+      are_single ? reach.brought : std::min(share.of_bodies + share.stored, reach.brought);
+  reach.struck = share.struck;
+  if (!reach.held) reach.energy += reach.struck;  // a port meets it at its own speed
   return reach;
 }
 

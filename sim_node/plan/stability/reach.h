@@ -23,6 +23,9 @@ struct Reach {
   double brought = 0.0;
   double pushed = 0.0;    ///< by driven forces through the scene [J]
   double in_pairs = 0.0;  ///< the part that the pairs of sets store [J]; 0 unless `counts_sets`
+  double falls = 0.0;     ///< the part that their potentials may fall by [J]; likewise
+  double struck = 0.0;  ///< of a liaison: what a port or driven matter may give to a body of it [J]
+  double factor = 1.0;  ///< of the energies
   /// Of each MAT the part of `brought` that may come to it, but for what pairs of sets store. It has `pushed` in it. Null: nothing.
   std::shared_ptr<const std::vector<EnergyShare>> shares = {};
   Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
@@ -47,7 +50,7 @@ struct Reach {
   int bisections = LinkBox{}.bisections;  ///< at most, for the slope of an expression; > 0
 };
 
-/// The diagonal of the box about all MATs at the start [m]. O(MATs). Precondition: there is one.
+/// The diagonal of the box about all MATs and surfaces at the start [m]; planes count at one point. O(MATs). Precondition: there is one.
 double diagonal_of(const engine::NetworkDescription& network);
 
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the

@@ -70,6 +70,12 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
   return smallest;
 }
 
+double smallest_rest_of(const NetworkDescription& network, const engine::SetLiaison& set) {
+  if (set.rest_length >= 0.0) return set.rest_length;
+  const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
+  return smallest_radius(network, set.set_p) + smallest_radius(network, others);
+}
+
 double flips_at(const NetworkDescription& network, const engine::SetLiaison& set) {
   double largest = -std::numeric_limits<double>::infinity();
   for (const std::uint32_t mat : set.set_p) {
@@ -91,9 +97,7 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   const StartPairs near(network, set);
   const bool on_surfaces = engine::acts_on_surfaces(network, set);
   SetStart start{reach_between(reach, network, set.set_p, others)};
-  start.rest_length = set.rest_length >= 0.0
-                          ? set.rest_length
-                          : smallest_radius(network, set.set_p) + smallest_radius(network, others);
+  start.rest_length = smallest_rest_of(network, set);
   Reach& here = start.reach;
   double most = 0.0;  // stored in a pair
   double nearest = set.range;
@@ -120,8 +124,12 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   start.fall =
       start.are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);
   if (reach.counts_sets) {
-    const double all = std::max(reach.energy, reach.brought);
-    here.energy += most + std::max(reach.in_pairs - start.stored, 0.0);
+    const double all = reach.brought + here.struck;
+    const double own_falls =
+        reach.factor * brought_by_pairs(network, set, nearest, start.rest_length, here);
+    here.energy += most + std::max(reach.in_pairs - start.stored, 0.0) +
+                   std::max(reach.falls - own_falls, 0.0);
+    if (on_surfaces && std::isfinite(start.fall)) here.energy += start.fall;
     if (near.are_kept()) here.energy = std::min(here.energy, all);
   } else {
     here.energy += most;

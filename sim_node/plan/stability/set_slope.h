@@ -39,6 +39,9 @@ double stiffness_across_at(const engine::StateMachine& state_machine, int dimens
 /// The largest distance from the surfaces of a set at which a normal flips [m]; -infinity: none does.
 double flips_at(const engine::NetworkDescription& network, const engine::SetLiaison& set);
 
+/// The smallest rest length of a pair of a set [m].
+double smallest_rest_of(const engine::NetworkDescription& network, const engine::SetLiaison& set);
+
 /// The smallest radius of some MATs [m].
 double smallest_radius(const engine::NetworkDescription& network,
                        const std::vector<std::uint32_t>& mats);

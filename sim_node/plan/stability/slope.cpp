@@ -457,16 +457,15 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
   slope.law_is_bounded = slope.bounded;
   if (std::isinf(flips_at) || slope.uncertainty != nullptr) return slope;
   const bool rest_moves = moves_rest(state_machine);
-  const double heaviest = std::max(reach.mass_a.high, reach.mass_b.high);
   const double pressed = reach.driven * std::max(rest_length - flips_at, 0.0);
-  const double fastest = 0.5 * heaviest * reach.speed * reach.speed + reach.pushed;
-  const double energy = std::max(fastest, approach_energy(reach)) + pressed;
+  const double energy = approach_energy(reach) + pressed;
   for (const engine::LinkState& state : state_machine.states) {
     const Flip flip = flip_of(state, rest_length, flips_at, rest_moves, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
     if (flip.barrier >= kNeverPassed * energy) continue;
     slope.bounded = false;
     slope.passing = std::max(slope.passing, energy / flip.barrier);
+    slope.barrier = std::min(slope.barrier, flip.barrier);
     if (flip.barrier <= energy && slope.uncertainty == nullptr) slope.uncertainty = kPassesSurface;
   }
   return slope;

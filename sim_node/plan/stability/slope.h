@@ -17,6 +17,8 @@ struct Slope {
   /// The energy of a ball over the one that takes it to where the normal of a surface flips; 0 while that is
   /// negligible, else not bounded.
   double passing = 0.0;
+  /// The energy that takes a ball there [J]; infinite: none does, or it is far from it.
+  double barrier = std::numeric_limits<double>::infinity();
   bool law_is_bounded = true;  ///< false: not bounded, and not for `passing` alone
   /// By how much the slope along the liaison varies in one of its states [N/m]: 0 for a spring.
   double variation = 0.0;
@@ -68,8 +70,7 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
 /// around a cylinder, and its normal flips where two nearest points are equally far.
 /// @param flips_at  the largest distance at which it flips [m], at most 0: 0 at the corner of a box;
 /// -infinity where it never does
-/// Certain where nothing pulls there, and a ball does not come there: not at the speed of the reach, nor with its
-/// energy.
+/// Certain where nothing pulls there, and a ball does not come there with the energy of the reach.
 Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, double rest_length,
                                 double flips_at, const Reach& reach);
 
