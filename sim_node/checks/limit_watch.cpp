@@ -79,7 +79,7 @@ LimitWatch::LimitWatch(const engine::NetworkDescription& network)
     for (std::size_t state = 0; state < state_machine.states.size(); ++state) {
       const plan::Slope slope =
           plan::largest_slope(only(state_machine, state), link.rest_length, network.dimension,
-                              reach_between(reach, network, {link.mat_a}, {link.mat_b}));
+                              reach_of_link(reach, network, link.mat_a, link.mat_b));
       slopes_.push_back(number(weights.stiffness * slope.stiffness, viscosity * slope.viscosity));
     }
   }

@@ -68,7 +68,7 @@ std::optional<LiaisonId> damper_that_turns(const engine::NetworkDescription& net
   for (std::uint32_t index = 0; index < network.links.size(); ++index) {
     const engine::Link& link = network.links[index];
     if (link.viscosity == 0.0 || link.isotropic) continue;
-    const Reach here = reach_between(graph.reach, network, {link.mat_a}, {link.mat_b});
+    const Reach here = reach_of_link(graph.reach, network, link.mat_a, link.mat_b);
     if (link.viscosity * here.inverse_mass * network.step <= kHeavy) continue;
     double length = (network.mats[link.mat_b].position - network.mats[link.mat_a].position).norm();
     if (link.stiffness > 0.0 && link.rest_length > 0.0) length = std::min(length, link.rest_length);

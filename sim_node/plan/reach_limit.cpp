@@ -192,7 +192,7 @@ ReachLimit limit_of(const NetworkDescription& network, const LiaisonGraph& graph
       continue;
     }
     const engine::StateLink& link = network.state_links[edge.liaison.index];
-    const Reach here = reach_between(graph.reach, network, {edge.mat_a}, {edge.mat_b});
+    const Reach here = reach_of_link(graph.reach, network, edge.mat_a, edge.mat_b);
     limit.energy = std::min(
         limit.energy,
         energy_followed(network.state_machines[link.state_machine], link.rest_length, turns, here));

@@ -1,5 +1,4 @@
-// tests/scene/reachable_energy_test.cpp -- scenes that are no longer certain once all the energy counts that may come
-// to a pair or to a wall, and scenes that stay so.
+// tests/scene/reachable_energy_test.cpp -- scenes whose pairs or walls get much energy, or little.
 #include <ostream>
 #include <string>
 
@@ -133,29 +132,28 @@ links:
   - {liaison: hard, between_sets: [h, l], name: meet}
   - {liaison: soft, between_sets: [[walls, far], l], name: stop}
 )yaml"},
-  }
-  ;
+};
 
-  INSTANTIATE_TEST_SUITE_P(Scenes, NotCertain, testing::ValuesIn(kNotCertain),
-                           [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, NotCertain, testing::ValuesIn(kNotCertain),
+                         [](const auto& one) { return one.param.name; });
 
-  class Certain : public testing::TestWithParam<Case> {};
+class Certain : public testing::TestWithParam<Case> {};
 
-  TEST_P(Certain, AsNothingElseComesToIt) {
-    const plan::Stability stability = stability_of(GetParam());
-    EXPECT_TRUE(stability.holds());
-    EXPECT_FALSE(stability.uncertainty) << stability.uncertainty->why;
-  }
+TEST_P(Certain, AsNothingElseComesToIt) {
+  const plan::Stability stability = stability_of(GetParam());
+  EXPECT_TRUE(stability.holds());
+  EXPECT_FALSE(stability.uncertainty) << stability.uncertainty->why;
+}
 
-  constexpr Case kCertain[] = {
-      {"AHeavyBallAtRestBesideALightOneThatIsFast", 2000.0, R"yaml(
+constexpr Case kCertain[] = {
+    {"AHeavyBallAtRestBesideALightOneThatIsFast", 2000.0, R"yaml(
 liaisons: {touch: {stiffness_n_per_m: 2000, viscosity_n_s_per_m: 0.09, pulls: false, range: rest}}
 matter:
   a: {kind: points, mass_kg: [10, 0.01], radius_m: 0.05, at_m: [[0.5, 0.3], [-0.5, 0]], velocity_m_per_s: [0, "20 * index"]}
   room: {kind: box, center_m: [0, 0], size_m: [2, 2], sides: both}
 links: [{liaison: touch, between_sets: [room, a], name: stop}]
 )yaml"},
-      {"ABeadOnAThreadBesideAWall", 8000.0, R"yaml(
+    {"ABeadOnAThreadBesideAWall", 8000.0, R"yaml(
 world: {gravity_m_per_s2: [0, -9.81]}
 liaisons:
   touch: {stiffness_n_per_m: 1200, viscosity_n_s_per_m: 0.04, pulls: false, range: rest}
@@ -166,10 +164,10 @@ matter:
   wall: {kind: plane, at_m: [-0.07, 0], normal: x, sides: both}
 links: [{liaison: touch, between_sets: [wall, a], name: stop}, {liaison: thread, between: [hook, a]}]
 )yaml"},
-  };
+};
 
-  INSTANTIATE_TEST_SUITE_P(Scenes, Certain, testing::ValuesIn(kCertain),
-                           [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, Certain, testing::ValuesIn(kCertain),
+                         [](const auto& one) { return one.param.name; });
 
-  }  // namespace
-  }  // namespace cordis::scene
+}  // namespace
+}  // namespace cordis::scene

@@ -333,19 +333,19 @@ TEST(Schema, TakesScenesByChanceThatTheReaderTakes) {
 TEST(Schema, TakesVariationsOfScenesThatTheReaderTakes) {
   const FileFacts facts = facts_of("scene");
   Variations variations(facts);
-  const auto count = static_cast<std::uint32_t>(rounds(4));
+  constexpr std::uint32_t kScenes = 4;
   const auto seed_of = [](std::uint32_t i) { return test_seed() + 100000 + i; };
-  for (std::uint32_t i = 0; i < count; ++i)
+  for (std::uint32_t i = 0; i < kScenes; ++i)
     variations.learn(json_of_text(random_scene_text(seed_of(i))));
   Json cases = Json::array();
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < kScenes; ++i) {
     const std::string name = "variation of scene " + std::to_string(seed_of(i));
     const auto take = [&](const std::string& text, const std::string& /*section*/) {
       add_if_taken(text, name, cases);
     };
     variations.of(json_of_text(random_scene_text(seed_of(i))), take);
   }
-  EXPECT_GT(cases.size(), count);
+  EXPECT_GT(cases.size(), kScenes);
   write_cases("variations", cases);
 }
 

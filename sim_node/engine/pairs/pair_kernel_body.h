@@ -118,9 +118,10 @@ void pad_row(const MemberColumns& members, std::size_t count, const PairRow& row
 }
 
 template <class Lanes>
-std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
-                         const std::uint32_t* neighbour, std::size_t candidates,
-                         double range_square, const PairRow& row) noexcept {
+[[gnu::always_inline]] inline std::size_t find_pairs(const MemberColumns& members, std::size_t a,
+                                                     const std::uint32_t* neighbour,
+                                                     std::size_t candidates, double range_square,
+                                                     const PairRow& row) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
   const PairRow out = row;  // whose arrays nothing written below can seem to move
@@ -150,6 +151,13 @@ std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
     gather(i, first_lanes<Lanes>(Lanes::kWidth));
   if (i < candidates) gather(i, first_lanes<Lanes>(candidates - i));
   return count;
+}
+
+template <class Lanes>
+std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
+                         const std::uint32_t* neighbour, std::size_t candidates,
+                         double range_square, const PairRow& row) noexcept {
+  return find_pairs<Lanes>(members, a, neighbour, candidates, range_square, row);
 }
 
 template <class Lanes>
@@ -273,9 +281,10 @@ typename Lanes::Row less_one(typename Lanes::Mask mask) noexcept {
 /// @param column   of the second ends
 /// @param partner  less what each counts for as a partner
 template <class Lanes>
-void spread_register(const std::uint32_t* column, const typename Lanes::Row3& tension,
-                     typename Lanes::Row partner, double* force, RowSum<Lanes>& sum,
-                     std::size_t part) noexcept {
+[[gnu::always_inline]] inline void spread_register(const std::uint32_t* column,
+                                                   const typename Lanes::Row3& tension,
+                                                   typename Lanes::Row partner, double* force,
+                                                   RowSum<Lanes>& sum, std::size_t part) noexcept {
   sum.x[part] = sum.x[part] + tension.x;
   sum.y[part] = sum.y[part] + tension.y;
   sum.z[part] = sum.z[part] + tension.z;
@@ -591,7 +600,7 @@ void friction_pairs(const FrictionTerms& terms, const MemberColumns& members, co
   }
 }
 
-/// Those of a register of pairs that are from MemberColumns::end on give their force to padding.
+/// Pairs of a register that are from MemberColumns::end on give their force to padding.
 template <class Lanes>
 void redirect_pairs(const MemberColumns& members, std::size_t first, const PairRow& row) noexcept {
   for (std::size_t i = first; i < first + Lanes::kWidth; ++i) {
@@ -702,7 +711,7 @@ void rows_of_contacts(const LinearContacts& contacts, const MemberColumns& membe
     const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
     const std::size_t candidates = rows.start[a + 1] - rows.start[a];
     const std::size_t count =
-        gather_pairs<Lanes>(members, a, neighbour, candidates, contacts.range_square, row);
+        find_pairs<Lanes>(members, a, neighbour, candidates, contacts.range_square, row);
     if (count == 0) continue;  // no sum that is added changes a bit
     pad_row<Lanes>(members, count, row);
     if (radius != nullptr) {
@@ -713,15 +722,24 @@ void rows_of_contacts(const LinearContacts& contacts, const MemberColumns& membe
     const auto own_way = every<Lanes>(moved);
     RowSum<Lanes> sum = no_force<Lanes>();
     RowSum<Lanes> viscous_sum = no_force<Lanes>();
+    const auto spread = [&](std::size_t first, std::size_t part) __attribute__((always_inline)) {
+      const auto rest_length =
+          radius == nullptr ? Lanes::every(contacts.rest_length) : Lanes::load(rest + first);
+      spread_contacts<Lanes, kViscous>(contacts, contact, members, row, first, rest_length, own_way,
+                                       force, viscous, sum, viscous_sum, part);
+    };
+    if (count <= Lanes::kWidth) {  // as most rows: all sums stay in registers
+      spread(0, 0);
+      give<Lanes>(sum, force + 4 * a);
+      if constexpr (kViscous) give<Lanes>(viscous_sum, viscous + 4 * a);
+      continue;
+    }
     for (std::size_t i = 0; i < count; i += kPairBatch) {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t first = i + part * Lanes::kWidth;
         if (first >= count) break;  // padding gives nothing
-        const auto rest_length =
-            radius == nullptr ? Lanes::every(contacts.rest_length) : Lanes::load(rest + first);
-        spread_contacts<Lanes, kViscous>(contacts, contact, members, row, first, rest_length,
-                                         own_way, force, viscous, sum, viscous_sum, part);
+        spread(first, part);
       }
     }
     give<Lanes>(sum, force + 4 * a);

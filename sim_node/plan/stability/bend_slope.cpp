@@ -10,6 +10,7 @@
 #include "sim_node/engine/links/bend_moment.h"
 #include "sim_node/engine/links/bend_shape.h"
 #include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/scene_box.h"
 #include "sim_node/plan/stability/stretch.h"
 
 namespace cordis::plan {

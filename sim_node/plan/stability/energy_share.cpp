@@ -6,7 +6,8 @@
 
 #include "node/assert.h"
 #include "node/disjoint_sets.h"
-#include "sim_node/plan/stability/reach.h"
+#include "sim_node/plan/stability/link_ends.h"
+#include "sim_node/plan/stability/scene_box.h"
 
 namespace cordis::plan {
 namespace {
@@ -17,18 +18,6 @@ bool is_mass(const engine::NetworkDescription& network, std::uint32_t mat) {
 
 bool is_port(const engine::NetworkDescription& network, std::uint32_t mat) {
   return network.mats[mat].kind == engine::MatKind::kPort;
-}
-
-/// Calls visit(a, b) for the ends of each link, Maxwell element and side of a bend.
-template <class Visit>
-void visit_links(const engine::NetworkDescription& network, Visit visit) {
-  for (const engine::Link& link : network.links) visit(link.mat_a, link.mat_b);
-  for (const engine::StateLink& link : network.state_links) visit(link.mat_a, link.mat_b);
-  for (const engine::MaxwellLink& link : network.maxwell_links) visit(link.mat_a, link.mat_b);
-  for (const engine::Bend& bend : network.bends) {
-    visit(bend.mat_a, bend.mat_b);
-    visit(bend.mat_b, bend.mat_c);
-  }
 }
 
 node::DisjointSets bodies_of(const engine::NetworkDescription& network) {
@@ -88,7 +77,7 @@ std::vector<EnergyShare> energy_shares(const engine::NetworkDescription& network
                                        const std::vector<double>& stored, double port_speed) {
   CORDIS_ASSERT(stored.size() == network.mats.size());
   const auto count = static_cast<std::uint32_t>(network.mats.size());
-  const double extent = diagonal_of(network);
+  const std::vector<double> falls = falls_of(network);
   node::DisjointSets bodies = bodies_of(network);
   std::vector<double> moving(count, 0.0);  // of the body whose root this is
   std::vector<double> mass(count, 0.0);    // likewise
@@ -96,8 +85,7 @@ std::vector<EnergyShare> energy_shares(const engine::NetworkDescription& network
     const engine::Mat& mat = network.mats[i];
     if (!is_mass(network, i)) continue;
     mass[bodies.root_of(i)] += mat.mass;
-    moving[bodies.root_of(i)] +=
-        mat.mass * (0.5 * mat.velocity.squaredNorm() + network.gravity_on(mat).norm() * extent);
+    moving[bodies.root_of(i)] += 0.5 * mat.mass * mat.velocity.squaredNorm() + falls[i];
   }
   node::DisjointSets groups = bodies;
   join_pairs(network, groups);

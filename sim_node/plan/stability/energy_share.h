@@ -1,4 +1,4 @@
-// sim_node/plan/stability/energy_share.h -- the part of the energy of a scene that may come to one mass.
+// sim_node/plan/stability/energy_share.h -- the energy of a scene that may come to one mass.
 #pragma once
 
 #include <vector>

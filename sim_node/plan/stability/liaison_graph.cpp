@@ -452,7 +452,7 @@ class SlopesOfLinks {
     return {elongation, elongation};
   }
   Reach reach_at_ends(const engine::StateLink& link) const {
-    return reach_between(reach_, network_, {link.mat_a}, {link.mat_b});
+    return reach_of_link(reach_, network_, link.mat_a, link.mat_b);
   }
   Key key_of(const engine::StateLink& link, const Reach& here) const {
     return {link.state_machine, static_cast<float>(link.rest_length),

@@ -14,6 +14,7 @@
 #include "sim_node/plan/stability/drive_extremes.h"
 #include "sim_node/plan/stability/law_energy.h"
 #include "sim_node/plan/stability/parameter_bounds.h"
+#include "sim_node/plan/stability/scene_box.h"
 #include "sim_node/plan/stability/set_slope.h"
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
@@ -135,7 +136,8 @@ double energy_brought(const engine::NetworkDescription& network) {
   for (const engine::Mat& mat : network.mats) {
     if (mat.kind == engine::MatKind::kMass) energy += 0.5 * mat.mass * mat.velocity.squaredNorm();
   }
-  return energy + weight_of(network) * diagonal_of(network);
+  const std::vector<double> falls = falls_of(network);
+  return std::accumulate(falls.begin(), falls.end(), energy);
 }
 
 /// The first Maxwell element, bend or set whose elasticity follows a variable.
@@ -169,29 +171,6 @@ double terminal_speed(const engine::LinkState& state, double force) {
     if (std::min(holds(speed), holds(-speed)) >= force) break;
   }
   return speed;
-}
-
-/// How far a surface reaches from its centre along each axis, where it has an end [m].
-engine::Vec3 extent_of(const engine::Surface& surface) {
-  const auto if_finite = [](double extent) { return std::isfinite(extent) ? extent : 0.0; };
-  const engine::Vec3& half = surface.half_size;
-  switch (surface.kind) {
-    case engine::SurfaceKind::kBox:
-    case engine::SurfaceKind::kBoxFace:
-      return half.unaryExpr(if_finite);
-    case engine::SurfaceKind::kCylinder:
-    case engine::SurfaceKind::kCylinderWall:
-    case engine::SurfaceKind::kCylinderEnd: {
-      const engine::Vec3 across =
-          (1.0 - surface.axis.array().square()).max(0.0).sqrt().matrix() * if_finite(half[0]);
-      return across + surface.axis.cwiseAbs() * if_finite(half[1]);
-    }
-    case engine::SurfaceKind::kSegment:
-      return surface.axis.cwiseAbs() * if_finite(half[0]);
-    case engine::SurfaceKind::kPlane:
-      break;
-  }
-  return engine::Vec3::Zero();
 }
 
 /// What links with states bring in: found once for all that are alike but for rounding.
@@ -286,22 +265,6 @@ Interval range_of_variable(const engine::NetworkDescription& network,
   return kAnyNumber;
 }
 
-double diagonal_of(const engine::NetworkDescription& network) {
-  CORDIS_ASSERT(!network.mats.empty());
-  engine::Vec3 lowest = network.mats.front().position;
-  engine::Vec3 highest = lowest;
-  for (const engine::Mat& mat : network.mats) {
-    lowest = lowest.cwiseMin(mat.position);
-    highest = highest.cwiseMax(mat.position);
-  }
-  for (const engine::Surface& surface : network.surfaces) {
-    const engine::Vec3 extent = extent_of(surface);
-    lowest = lowest.cwiseMin(network.mats[surface.mat].position - extent);
-    highest = highest.cwiseMax(network.mats[surface.mat].position + extent);
-  }
-  return (highest - lowest).norm();
-}
-
 Reach reach_of(const engine::NetworkDescription& network, double factor) {
   Reach reach;
   reach.factor = factor;
@@ -394,12 +357,17 @@ Reach reach_between(Reach reach, const engine::NetworkDescription& network,
     }
   }
   if (reach.shares == nullptr) return reach;
-  const bool are_single = mats_a.size() == 1 && mats_b.size() == 1;
-  reach.energy =
-      are_single ? reach.brought : std::min(share.of_bodies + share.stored, reach.brought);
+  reach.energy = std::min(share.of_bodies + share.stored, reach.brought);
   reach.struck = share.struck;
   if (!reach.held) reach.energy += reach.struck;  // a port meets it at its own speed
   return reach;
+}
+
+Reach reach_of_link(const Reach& reach, const engine::NetworkDescription& network,
+                    std::uint32_t mat_a, std::uint32_t mat_b) {
+  Reach here = reach_between(reach, network, {mat_a}, {mat_b});
+  if (reach.shares != nullptr) here.energy = reach.brought + (here.held ? 0.0 : here.struck);
+  return here;
 }
 
 }  // namespace cordis::plan

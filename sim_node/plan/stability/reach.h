@@ -24,9 +24,9 @@ struct Reach {
   double pushed = 0.0;    ///< by driven forces through the scene [J]
   double in_pairs = 0.0;  ///< the part that the pairs of sets store [J]; 0 unless `counts_sets`
   double falls = 0.0;     ///< the part that their potentials may fall by [J]; likewise
-  double struck = 0.0;  ///< of a liaison: what a port or driven matter may give to a body of it [J]
-  double factor = 1.0;  ///< of the energies
-  /// Of each MAT the part of `brought` that may come to it, but for what pairs of sets store. It has `pushed` in it. Null: nothing.
+  double struck = 0.0;    ///< what a port or driven matter may give to a body of the liaison [J]
+  double factor = 1.0;    ///< the energies are multiplied by it
+  /// The part of `brought` that may come to each MAT, without what pairs of sets store, and with `pushed`. Null: nothing.
   std::shared_ptr<const std::vector<EnergyShare>> shares = {};
   Interval mass_a = {};  ///< masses at the ends of the liaison [kg]; 0 for what is no mass
   Interval mass_b = {};
@@ -50,9 +50,6 @@ struct Reach {
   int bisections = LinkBox{}.bisections;  ///< at most, for the slope of an expression; > 0
 };
 
-/// The diagonal of the box about all MATs and surfaces at the start [m]; planes count at one point. O(MATs). Precondition: there is one.
-double diagonal_of(const engine::NetworkDescription& network);
-
 /// What the start of a network says: links as much again as they are, or as their rest lengths; the
 /// fastest MAT, at least 1 m/s; two such MATs meeting; the energy of the whole.
 /// @param factor  of the energies
@@ -62,8 +59,12 @@ Reach reach_of(const engine::NetworkDescription& network, double factor = 1.0);
 Interval range_of_variable(const engine::NetworkDescription& network,
                            const engine::Variable& variable);
 
-/// The reach of a liaison between one of some MATs and one of others. A pair of single MATs may get all the energy
-/// there is. One of many gets its share: of two bodies, or of one where a side has no masses, and all that is stored.
+/// The reach of a link between two MATs: it may get all the energy there is.
+Reach reach_of_link(const Reach& reach, const engine::NetworkDescription& network,
+                    std::uint32_t mat_a, std::uint32_t mat_b);
+
+/// The reach of a liaison between one of some MATs and one of others. It may get its share: what two bodies have and all
+/// that is stored, but no more than there is.
 Reach reach_between(Reach reach, const engine::NetworkDescription& network,
                     const std::vector<std::uint32_t>& mats_a,
                     const std::vector<std::uint32_t>& mats_b);
