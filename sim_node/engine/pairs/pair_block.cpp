@@ -28,6 +28,16 @@ void PairBlock::end_row_of(std::size_t member, std::size_t pairs) noexcept {
   start_[last_ - first_] = count_;
 }
 
+std::size_t PairBlock::take_rows(const PairKernel& kernel, const MemberColumns& members,
+                                 const NeighbourRows& rows, double range_square) noexcept {
+  const std::size_t taken = kernel.gather_rows(
+      members, rows, range_square,
+      {row_at(0), column_a_.data(), start_.data() + 1, kEnough, start_.size() - 1});
+  last_ += taken;
+  count_ = start_[taken];
+  return taken;
+}
+
 void PairBlock::pad(const MemberColumns& members) noexcept {
   const PairRow row = row_at(0);
   for (std::size_t i = count_; i < padded_count(); ++i) {

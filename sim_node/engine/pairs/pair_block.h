@@ -30,6 +30,9 @@ class PairBlock {
   void end_row(std::size_t pairs) noexcept { end_row_of(last_, pairs); }
   /// Likewise; the row is that of any member. Then rows are not numbered in order.
   void end_row_of(std::size_t member, std::size_t pairs) noexcept;
+  /// Gathers rows from that of begin() on, until there are enough pairs. @return how many rows
+  std::size_t take_rows(const PairKernel& kernel, const MemberColumns& members,
+                        const NeighbourRows& rows, double range_square) noexcept;
   bool is_full() const noexcept { return count_ >= kEnough || last_ - first_ + 1 == start_.size(); }
   /// Pairs whose columns are `end` or beyond give their force to padding instead.
   void redirect(const MemberColumns& members) noexcept;

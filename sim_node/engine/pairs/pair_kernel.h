@@ -118,6 +118,19 @@ using GatherPairs = std::size_t (*)(const MemberColumns& members, std::size_t a,
                                     const std::uint32_t* neighbour, std::size_t count,
                                     double range_square, const PairRow& row) noexcept;
 
+/// Where the pairs of several rows go, those of one row after those of the other.
+struct RowsOut {
+  PairRow pairs;
+  std::uint32_t* column_a = nullptr;  // of each pair
+  std::size_t* start = nullptr;       // of the row after each row
+  std::size_t enough = 0;             // no further row is begun from so many pairs on
+  std::size_t rows = 0;               // at most
+};
+
+/// Gathers the pairs of rows likewise, as many rows as there is room for. @return how many rows
+using GatherRows = std::size_t (*)(const MemberColumns& members, const NeighbourRows& rows,
+                                   double range_square, const RowsOut& out) noexcept;
+
 /// A plane whose pairs are looked for.
 struct PlaneQuery {
   double normal[3] = {};
@@ -183,21 +196,6 @@ struct LinearPair {
 /// @param rest  rest lengths [m]
 using LinearPairs = void (*)(const LinearPair& pair, const PairRow& row, std::size_t count,
                              const double* rest, double* factor, double* viscous_factor) noexcept;
-
-/// Contacts of a set that are all that there is between its members.
-struct LinearContacts {
-  LinearPair pair;
-  double range_square = 0.0;       // [m^2]
-  double rest_length = 0.0;        // [m]; not used with radii
-  const double* radius = nullptr;  // of each member [m]; null: all pairs have the rest length
-  PartnerShare share;
-};
-
-/// Gathers the rows, finds the forces and spreads them, with the bits of MeasurePairs, LinearPairs and SpreadRows.
-/// @param viscous  what the part of the force that stores no energy is added to; null: nothing
-using LinearRows = void (*)(const LinearContacts& contacts, const MemberColumns& members,
-                            const NeighbourRows& rows, const PairRow& row, double* force,
-                            double* viscous) noexcept;
 
 /// Friction, made ready for the contacts of a set.
 struct FrictionTerm {
@@ -286,13 +284,13 @@ struct PairKernel {
   KeepNear keep_near = nullptr;
   LargestMove largest_move = nullptr;
   GatherPairs gather_pairs = nullptr;
+  GatherRows gather_rows = nullptr;
   GatherPlane gather_plane = nullptr;
   TakeMembers take_members = nullptr;
   GiveForces give_forces = nullptr;
   MeasurePairs measure_pairs = nullptr;
   SpreadRows spread_rows = nullptr;
   LinearPairs linear_pairs = nullptr;
-  LinearRows linear_rows = nullptr;
   FrictionPairs friction_pairs = nullptr;
   SpreadVectors spread_vectors = nullptr;
   LennardJonesRows lennard_jones_rows = nullptr;

@@ -161,6 +161,32 @@ std::size_t gather_pairs(const MemberColumns& members, std::size_t a,
 }
 
 template <class Lanes>
+std::size_t gather_rows(const MemberColumns& members, const NeighbourRows& rows,
+                        double range_square, const RowsOut& out) noexcept {
+  const PairRow all = out.pairs;
+  std::size_t count = 0;
+  std::size_t a = rows.first;
+  for (; a < rows.last && a - rows.first < out.rows && count < out.enough; ++a) {
+    PairRow row;
+    row.column = all.column + count;
+    row.x = all.x + count;
+    row.y = all.y + count;
+    row.z = all.z + count;
+    row.square = all.square + count;
+    const std::size_t found =
+        find_pairs<Lanes>(members, a, rows.neighbour + (rows.start[a] - rows.origin),
+                          rows.start[a + 1] - rows.start[a], range_square, row);
+    for (std::size_t i = 0; i < found; i += kPairBatch) {  // there is room for a whole batch
+      for (std::size_t lane = 0; lane < kPairBatch; ++lane)
+        out.column_a[count + i + lane] = static_cast<std::uint32_t>(4 * a);
+    }
+    count += found;
+    out.start[a - rows.first] = count;
+  }
+  return a - rows.first;
+}
+
+template <class Lanes>
 std::size_t gather_plane(const MemberColumns& members, const PlaneQuery& plane,
                          const std::uint32_t* neighbour, std::size_t candidates,
                          const PairRow& row) noexcept {
@@ -387,40 +413,23 @@ void spread_vectors(const PairRows& rows, const double* factor, const FrictionRo
   });
 }
 
-/// A LinearPair in all lanes.
-template <class Lanes>
-struct LinearLanes {
-  using Row = typename Lanes::Row;
-
-  explicit LinearLanes(const LinearPair& pair) noexcept
-      : stiffness(Lanes::every(pair.stiffness)),
-        viscosity(Lanes::every(pair.viscosity_over_dt)),
-        min_tension(Lanes::every(pair.min_tension)),
-        max_tension(Lanes::every(pair.max_tension)) {}
-
-  Row limited(Row tension) const noexcept {
-    return Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
-  }
-
-  Row stiffness;
-  Row viscosity;
-  Row min_tension;
-  Row max_tension;
-};
-
 template <class Lanes>
 void linear_pairs(const LinearPair& pair, const PairRow& row, std::size_t count, const double* rest,
                   double* factor, double* viscous_factor) noexcept {
   using Row = typename Lanes::Row;
-  const LinearLanes<Lanes> contact(pair);
+  const Row stiffness = Lanes::every(pair.stiffness);
+  const Row viscosity = Lanes::every(pair.viscosity_over_dt);
+  const Row min_tension = Lanes::every(pair.min_tension);
+  const Row max_tension = Lanes::every(pair.max_tension);
   for (std::size_t i = 0; i < count; i += Lanes::kWidth) {
     const Row inverse = Lanes::load(row.inverse + i);
     const Row elongation = Lanes::load(row.length + i) - Lanes::load(rest + i);
-    const Row elastic = contact.stiffness * elongation;
-    const Row tension = elastic + contact.viscosity * Lanes::load(row.elongation_increment + i);
-    const Row limited = contact.limited(tension);
+    const Row elastic = stiffness * elongation;
+    const Row tension = elastic + viscosity * Lanes::load(row.elongation_increment + i);
+    const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
+    const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
     Lanes::store(factor + i, limited * inverse);
-    Lanes::store(viscous_factor + i, (limited - contact.limited(elastic)) * inverse);
+    Lanes::store(viscous_factor + i, (limited - stored) * inverse);
   }
 }
 
@@ -600,15 +609,6 @@ void friction_pairs(const FrictionTerms& terms, const MemberColumns& members, co
   }
 }
 
-/// Pairs of a register that are from MemberColumns::end on give their force to padding.
-template <class Lanes>
-void redirect_pairs(const MemberColumns& members, std::size_t first, const PairRow& row) noexcept {
-  for (std::size_t i = first; i < first + Lanes::kWidth; ++i) {
-    if (row.column[i] >= members.end)
-      row.column[i] = members.padding + 4 * static_cast<std::uint32_t>(i % kPairBatch);
-  }
-}
-
 /// The pairs of a row from MemberColumns::end on give their force to padding. Pairs ascend in a row.
 template <class Lanes>
 void redirect_row(const MemberColumns& members, std::size_t count, const PairRow& row) noexcept {
@@ -668,93 +668,6 @@ void lennard_jones_parts(const LennardJonesPair& pair, const MemberColumns& memb
     RowSum<Lanes> unused = no_force<Lanes>();
     lennard_jones_row<Lanes>(pair, row, count, force, unused);
   }
-}
-
-/// Finds the forces of a register of pairs of a padded row, and spreads them.
-template <class Lanes, bool kViscous>
-[[gnu::always_inline]] inline void spread_contacts(
-    const LinearContacts& contacts, const LinearLanes<Lanes>& contact, const MemberColumns& members,
-    const PairRow& row, std::size_t first, typename Lanes::Row rest_length,
-    const typename Lanes::Row3& own_way, double* force, double* viscous, RowSum<Lanes>& sum,
-    RowSum<Lanes>& viscous_sum, std::size_t part) noexcept {
-  using Row = typename Lanes::Row;
-  using Row3 = typename Lanes::Row3;
-  const Row square = Lanes::load(row.square + first);
-  const Row length = Lanes::sqrt(square);
-  const Row inverse = Lanes::inverse_or_zero(square, length);
-  const Row3 vector = vectors_of<Lanes>(row, first);
-  const Row3 way = Lanes::vectors(members.moved, row.column + first);
-  const Row along = dot<Lanes>(vector, {way.x - own_way.x, way.y - own_way.y, way.z - own_way.z});
-  const Row elastic = contact.stiffness * (length - rest_length);
-  const Row limited = contact.limited(elastic + contact.viscosity * (along * inverse));
-  const Row factor = limited * inverse;
-  if (members.end != kNoColumn) redirect_pairs<Lanes>(members, first, row);
-  spread_register<Lanes>(row.column + first, scaled<Lanes>(vector, factor),
-                         less_share<Lanes>(contacts.share, length, factor), force, sum, part);
-  if constexpr (kViscous) {
-    const Row lost = (limited - contact.limited(elastic)) * inverse;
-    spread_register<Lanes>(row.column + first, scaled<Lanes>(vector, lost),
-                           less_share<Lanes>(contacts.share, length, lost), viscous, viscous_sum,
-                           part);
-  }
-}
-
-template <class Lanes, bool kViscous>
-void rows_of_contacts(const LinearContacts& contacts, const MemberColumns& members,
-                      const NeighbourRows& rows, const PairRow& all, double* force,
-                      double* viscous) noexcept {
-  const PairRow row = all;
-  const LinearLanes<Lanes> contact(contacts.pair);
-  const double* const radius = contacts.radius;
-  double* const rest = row.length;  // room, for lengths stay in registers
-  for (std::size_t a = rows.first; a < rows.last; ++a) {
-    const std::uint32_t* neighbour = rows.neighbour + (rows.start[a] - rows.origin);
-    const std::size_t candidates = rows.start[a + 1] - rows.start[a];
-    const std::size_t count =
-        find_pairs<Lanes>(members, a, neighbour, candidates, contacts.range_square, row);
-    if (count == 0) continue;  // no sum that is added changes a bit
-    pad_row<Lanes>(members, count, row);
-    if (radius != nullptr) {
-      for (std::size_t i = 0; i < count; ++i) rest[i] = radius[a] + radius[row.column[i] / 4];
-      for (std::size_t i = count; i % kPairBatch != 0; ++i) rest[i] = 0.0;
-    }
-    const double* const moved = members.moved + 4 * a;
-    const auto own_way = every<Lanes>(moved);
-    RowSum<Lanes> sum = no_force<Lanes>();
-    RowSum<Lanes> viscous_sum = no_force<Lanes>();
-    const auto spread = [&](std::size_t first, std::size_t part) __attribute__((always_inline)) {
-      const auto rest_length =
-          radius == nullptr ? Lanes::every(contacts.rest_length) : Lanes::load(rest + first);
-      spread_contacts<Lanes, kViscous>(contacts, contact, members, row, first, rest_length, own_way,
-                                       force, viscous, sum, viscous_sum, part);
-    };
-    if (count <= Lanes::kWidth) {  // as most rows: all sums stay in registers
-      spread(0, 0);
-      give<Lanes>(sum, force + 4 * a);
-      if constexpr (kViscous) give<Lanes>(viscous_sum, viscous + 4 * a);
-      continue;
-    }
-    for (std::size_t i = 0; i < count; i += kPairBatch) {
-#pragma GCC unroll 4
-      for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
-        const std::size_t first = i + part * Lanes::kWidth;
-        if (first >= count) break;  // padding gives nothing
-        spread(first, part);
-      }
-    }
-    give<Lanes>(sum, force + 4 * a);
-    if constexpr (kViscous) give<Lanes>(viscous_sum, viscous + 4 * a);
-  }
-}
-
-template <class Lanes>
-void linear_rows(const LinearContacts& contacts, const MemberColumns& members,
-                 const NeighbourRows& rows, const PairRow& row, double* force,
-                 double* viscous) noexcept {
-  if (viscous == nullptr)
-    rows_of_contacts<Lanes, false>(contacts, members, rows, row, force, viscous);
-  else
-    rows_of_contacts<Lanes, true>(contacts, members, rows, row, force, viscous);
 }
 
 template <class Lanes>

@@ -107,6 +107,8 @@ class PairStateMachines {
   double switching() const noexcept { return switching_; }  ///< by the changes of this step [J]
   /// Pairs of this step that could not be remembered, for lack of room.
   std::uint32_t forgotten() const noexcept { return forgotten_; }
+  /// True if pairs have states that a step may change.
+  bool remembers(const PairStep& step) const noexcept { return !stateless_ && !step.frozen; }
 
  private:
   enum Array : std::size_t {
@@ -128,7 +130,6 @@ class PairStateMachines {
   };
 
   double* array(Array which) noexcept { return values_.data() + which * block_capacity_; }
-  bool remembers(const PairStep& step) const noexcept { return !stateless_ && !step.frozen; }
   double* memory_of(std::size_t pair) noexcept {
     if (memory_.empty()) return nullptr;
     return memory_.data() + pair / kPairBatch * states_.slot_count() * kPairBatch +

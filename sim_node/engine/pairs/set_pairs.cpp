@@ -490,11 +490,13 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows,
     if (!contacts_.empty() && step.sums_contacts) add_lennard_jones_contacts(rows);
     return;
   }
-  if (takes_rows_at_once(step)) {
-    block.begin(rows.first);
-    const LinearContacts contacts{linear_, range_ * range_, rest_length_, rest().radius, share_};
-    kernel_.linear_rows(contacts, members, rows, block.next_row(), force_.data(),
-                        has_viscous_ ? viscous_.data() : nullptr);
+  if (surfaces_.empty() && !state_machines_.remembers(step)) {
+    NeighbourRows left = rows;
+    while (left.first < left.last) {
+      block.begin(left.first);
+      left.first += block.take_rows(kernel_, members, left, range_ * range_);
+      step_block(step, members, block);
+    }
     return;
   }
   for (std::size_t a = rows.first; a < rows.last;) {
@@ -504,12 +506,6 @@ void SetPairs::step_rows(const PairStep& step, const NeighbourRows& rows,
     }
     step_block(step, members, block);
   }
-}
-
-/// True if nothing but the forces on the members is asked for.
-bool SetPairs::takes_rows_at_once(const PairStep& step) const noexcept {
-  return path_ == Path::kLinear && surfaces_.empty() && !friction_.acts() && !follows_variables_ &&
-         (contacts_.empty() || !step.sums_contacts);
 }
 
 /// The kernel keeps no forces of pairs: those of a contact are found again, with the same bits.

@@ -210,7 +210,6 @@ class SetPairs {
   StepEnergy give_forces(const ForceColumns& columns) noexcept;
   void count_partners() noexcept;
   std::uint32_t largest_among(std::size_t first, std::size_t last) const noexcept;
-  bool takes_rows_at_once(const PairStep& step) const noexcept;
   void step_rows(const PairStep& step, const NeighbourRows& rows, const MemberColumns& members,
                  PairBlock& block) noexcept;
   std::size_t gather(const PairStep& step, const NeighbourRows& rows, std::size_t a,
