@@ -62,7 +62,10 @@ std::size_t PairBlock::padded_count() const noexcept {
 }
 
 PairRows PairBlock::rows() noexcept {
-  return {row_at(0), column_a_.data(), count_, first_, last_, start_.data(), {}};
+  return {row_at(0), column_a_.data(),
+          count_,    first_,
+          last_,     start_.data(),
+          {},        {array(kGiven), array(kGiven + 1), array(kGiven + 2), array(kGiven + 3)}};
 }
 
 PairRow PairBlock::row_at(std::size_t pair) noexcept {

@@ -65,10 +65,11 @@ class PairBlock {
     kRestLength,
     kFactor,
     kViscousFactor,
-    kArrayCount
+    kGiven,
+    kArrayCount = kGiven + 4
   };
 
-  double* array(Array which) noexcept { return values_.data() + which * capacity_; }
+  double* array(std::size_t which) noexcept { return values_.data() + which * capacity_; }
   PairRow row_at(std::size_t pair) noexcept;
 
   std::size_t capacity_;

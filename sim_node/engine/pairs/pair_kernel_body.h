@@ -304,7 +304,7 @@ typename Lanes::Row less_one(typename Lanes::Mask mask) noexcept {
 }
 
 /// Takes a register of forces from the second ends of its pairs, and adds them to the sum.
-/// @param column   of the second ends
+/// @param column   of these
 /// @param partner  less what each counts for as a partner
 template <class Lanes>
 [[gnu::always_inline]] inline void spread_register(const std::uint32_t* column,
@@ -346,53 +346,65 @@ void give(const RowSum<Lanes>& sum, double* column) noexcept {
 alignas(64) constexpr double kLaneNumber[] = {0, 1, 2, 3, 4, 5, 6, 7};
 static_assert(sizeof(kLaneNumber) == kPairBatch * sizeof(double));
 
-/// As `spread`, of pairs that begin anywhere, and of the first `count` lanes alone: what else
-/// stands in the lanes belongs to other rows, and gets nothing.
+/// The first `count` lanes, 0 in the others.
 template <class Lanes>
-void spread_some(const PairRows& rows, std::size_t i, std::size_t count, const double* factors,
-                 typename Lanes::Row3 tension, double* force, RowSum<Lanes>& sum,
-                 std::size_t part) noexcept {
-  using Row = typename Lanes::Row;
-  const PairRow& row = rows.pairs;
-  Row partner =
-      less_share<Lanes>(rows.share, Lanes::load_any(row.length + i), Lanes::load_any(factors + i));
-  if (count < Lanes::kWidth) {
-    const auto own =
-        Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
-    tension.x = Lanes::select(own, tension.x, Lanes::zero());
-    tension.y = Lanes::select(own, tension.y, Lanes::zero());
-    tension.z = Lanes::select(own, tension.z, Lanes::zero());
-    partner = Lanes::select(own, partner, Lanes::zero());
-  }
-  spread_register<Lanes>(row.column + i, tension, partner, force, sum, part);
+typename Lanes::Row first_of(std::size_t count, typename Lanes::Row row) noexcept {
+  const auto own = Lanes::less(Lanes::load(kLaneNumber), Lanes::every(static_cast<double>(count)));
+  return Lanes::select(own, row, Lanes::zero());
 }
 
-/// factor * (vector from a to b), of pairs that begin anywhere.
+/// factor * (vector from a to b).
 template <class Lanes>
 typename Lanes::Row3 along_pairs(const PairRow& row, std::size_t i,
                                  const double* factors) noexcept {
-  const typename Lanes::Row factor = Lanes::load_any(factors + i);
-  return {Lanes::load_any(row.x + i) * factor, Lanes::load_any(row.y + i) * factor,
-          Lanes::load_any(row.z + i) * factor};
+  return scaled<Lanes>(vectors_of<Lanes>(row, i), Lanes::load(factors + i));
 }
 
-/// @param force_of  of the pairs from a number on: what they give to a
-template <class Lanes, class ForceOf>
-void spread_all(const PairRows& rows, const double* factor, double* force,
-                ForceOf force_of) noexcept {
+/// Adds what the pairs of each row give to its member. A batch begins with its row.
+template <class Lanes>
+void sum_rows(const PairRows& rows, double* force) noexcept {
   for (std::size_t a = rows.first; a < rows.last; ++a) {
+    const std::size_t begin = rows.start[a - rows.first];
     const std::size_t end = rows.start[a - rows.first + 1];
+    if (begin == end) continue;
     RowSum<Lanes> sum = no_force<Lanes>();
-    for (std::size_t i = rows.start[a - rows.first]; i < end; i += kPairBatch) {
+    for (std::size_t i = begin; i < end; i += kPairBatch) {
 #pragma GCC unroll 4
       for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
         const std::size_t first = i + part * Lanes::kWidth;
         if (first >= end) break;
-        spread_some<Lanes>(rows, first, end - first, factor, force_of(first), force, sum, part);
+        const std::size_t count = end - first;
+        const auto given = [&](std::size_t which) noexcept {
+          const auto row = Lanes::load_any(rows.given[which] + first);
+          return count < Lanes::kWidth ? first_of<Lanes>(count, row) : row;
+        };
+        sum.x[part] = sum.x[part] + given(0);
+        sum.y[part] = sum.y[part] + given(1);
+        sum.z[part] = sum.z[part] + given(2);
+        sum.partners[part] = sum.partners[part] + given(3);
       }
     }
     give<Lanes>(sum, force + 4 * a);
   }
+}
+
+/// First what the second ends get, in whole registers: a row takes from later members alone, so no sum changes.
+/// @param force_of  of the pairs from a number on: what they give to a
+template <class Lanes, class ForceOf>
+void spread_all(const PairRows& rows, const double* factor, double* force,
+                ForceOf force_of) noexcept {
+  double* const* const given = rows.given;
+  for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
+    const typename Lanes::Row3 tension = force_of(i);
+    const auto partner =
+        less_share<Lanes>(rows.share, Lanes::load(rows.pairs.length + i), Lanes::load(factor + i));
+    Lanes::store(given[0] + i, tension.x);
+    Lanes::store(given[1] + i, tension.y);
+    Lanes::store(given[2] + i, tension.z);
+    Lanes::store(given[3] + i, partner);
+    Lanes::subtract(force, rows.pairs.column + i, tension, partner);
+  }
+  sum_rows<Lanes>(rows, force);
 }
 
 template <class Lanes>
@@ -407,9 +419,9 @@ void spread_vectors(const PairRows& rows, const double* factor, const FrictionRo
                     double* force) noexcept {
   spread_all<Lanes>(rows, factor, force, [&](std::size_t i) noexcept {
     const typename Lanes::Row3 along = along_pairs<Lanes>(rows.pairs, i, factor);
-    return typename Lanes::Row3{along.x + Lanes::load_any(friction.force[0] + i),
-                                along.y + Lanes::load_any(friction.force[1] + i),
-                                along.z + Lanes::load_any(friction.force[2] + i)};
+    return typename Lanes::Row3{along.x + Lanes::load(friction.force[0] + i),
+                                along.y + Lanes::load(friction.force[1] + i),
+                                along.z + Lanes::load(friction.force[2] + i)};
   });
 }
 
@@ -672,10 +684,11 @@ void lennard_jones_parts(const LennardJonesPair& pair, const MemberColumns& memb
 
 template <class Lanes>
 void spread_to_later(const PairRows& rows, const double* factor, double* force) noexcept {
-  RowSum<Lanes> unused = no_force<Lanes>();
   for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
-    spread_some<Lanes>(rows, i, Lanes::kWidth, factor, along_pairs<Lanes>(rows.pairs, i, factor),
-                       force, unused, 0);
+    const auto partner =
+        less_share<Lanes>(rows.share, Lanes::load(rows.pairs.length + i), Lanes::load(factor + i));
+    Lanes::subtract(force, rows.pairs.column + i, along_pairs<Lanes>(rows.pairs, i, factor),
+                    partner);
   }
 }
 
