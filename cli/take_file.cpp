@@ -1,29 +1,16 @@
 // cli/take_file.cpp
 #include "cli/take_file.h"
 
-#include <array>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include "cli/command_line.h"
 #include "node/config/count_text.h"
 #include "record_node/mcap/file_error.h"
-#include "record_node/mcap/format.h"
 
 namespace cordis::cli {
-
-bool is_take(const std::string& word) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(word, ignored)) return false;
-  if (word.ends_with(".mcap") || word.ends_with(".mcap.part")) return true;
-  std::array<char, mcap::kMagic.size()> begin{};
-  std::ifstream(word, std::ios::binary).read(begin.data(), begin.size());
-  return std::memcmp(begin.data(), mcap::kMagic.data(), begin.size()) == 0;
-}
 
 std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::string& file) {
   std::error_code ignored;

@@ -11,10 +11,6 @@
 
 namespace cordis::cli {
 
-/// True if the word names a file that is a take: by its first bytes, or by its name alone when those
-/// are damaged.
-bool is_take(const std::string& word);
-
 /// Opens a take; of a torn one it says on stderr how much is left. @throws UsageError when there is none
 std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::string& file);
 

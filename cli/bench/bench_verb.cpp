@@ -6,12 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/bench/bench_report.h"
 #include "cli/exit_code.h"
 #include "cli/progress_line.h"
 #include "cli/run/gnuplot.h"
 #include "cli/table/output_file.h"
+#include "cli/table/table_options.h"
 
 namespace cordis::cli {
 namespace {
@@ -24,6 +26,9 @@ struct BenchWords {
 
 int run(const BenchWords& words) {
   // Files that cannot be written are known before anything is measured.
+  const std::vector<NamedFile> outputs{{"--json", words.json_file}, {"--chart", words.chart_file}};
+  refuse_shared_files(outputs);
+  refuse_overwriting(outputs, {});
   std::optional<OutputFile> json_file;
   if (!words.json_file.empty()) json_file.emplace(words.json_file);
   if (!words.chart_file.empty() && !has_gnuplot())

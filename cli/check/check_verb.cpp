@@ -21,7 +21,8 @@
 #include "cli/run/node_check.h"
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
-#include "cli/take_file.h"
+#include "cli/table/table_options.h"
+#include "node/config/regular_file.h"
 #include "node/terminal_text.h"
 
 namespace cordis::cli {
@@ -71,7 +72,7 @@ int check_take(const CheckOptions& options, const PutJson& put_json) {
 }
 
 int check_file(const CheckOptions& options, const PutJson& put_json) {
-  if (!options.text && is_take(options.file)) return check_take(options, put_json);
+  if (!options.text && config::is_take_file(options.file)) return check_take(options, put_json);
   const SceneCheck check = check_scene_and_nodes(options);
   if (options.json_file != "-") {
     node::print_text(stdout, text_of(check));
@@ -121,6 +122,14 @@ int check_files(const CheckOptions& common, const std::vector<CheckOptions>& fil
   }
   write_json(common.json_file, list + "\n]\n");
   return worst;
+}
+
+void refuse_overwritten_files(const std::vector<CheckOptions>& files) {
+  std::vector<NamedFile> read;
+  for (const CheckOptions& options : files) {
+    if (!options.text) read.push_back({"its own file", options.file});
+  }
+  refuse_overwriting({{"--json", files.front().json_file}}, read);
 }
 
 std::string standard_input() {
@@ -203,6 +212,7 @@ void add_check_verb(CommandLine& line) {
     CheckOptions& asked = words->options;
     if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
     const std::vector<CheckOptions> files = files_of(asked, words->more);
+    refuse_overwritten_files(files);
     if (files.size() > 1) return check_files(asked, files);
     return check_file(files.front(),
                       [&](const std::string& json) { write_json(asked.json_file, json); });

@@ -14,6 +14,7 @@
 #include "cli/message_types.h"
 #include "cli/take_file.h"
 #include "node/config/count_text.h"
+#include "node/config/regular_file.h"
 #include "node/stop.h"
 #include "node/terminal_text.h"
 #include "record_node/idl/idl_parser.h"
@@ -95,7 +96,7 @@ void check_topic(const mcap::Reader& take, const std::string& topic) {
 }  // namespace
 
 bool names_take(const std::string& word) {
-  return word.ends_with(".mcap") || word.ends_with(".mcap.part") || is_take(word);
+  return word.ends_with(".mcap") || word.ends_with(".mcap.part") || config::is_take_file(word);
 }
 
 int echo_take(const TakeEcho& wanted, MessagePrinter& printer) {

@@ -169,7 +169,7 @@ void add_run_verb(CommandLine& line) {
     const NamedFile summary{"--summary", words->options.summary_file};
     const NamedFile take{"--record", words->record};
     refuse_shared_files({{"FILE", words->options.launch_file}, signals, summary, take});
-    refuse_yaml_files({signals, summary, take});
+    refuse_overwriting({signals, summary}, {});
     return run(words->options);
   });
 }

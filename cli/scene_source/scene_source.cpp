@@ -9,7 +9,7 @@
 #include "cli/scene_source/live_source.h"
 #include "cli/scene_source/offline_source.h"
 #include "cli/scene_source/take_source.h"
-#include "cli/take_file.h"
+#include "node/config/regular_file.h"
 
 namespace cordis::cli {
 namespace {
@@ -35,7 +35,7 @@ void add_source_words(Verb& verb, SourceWords& words) {
 
 std::unique_ptr<SceneSource> open_source(const std::string& verb, const SourceWords& words) {
   const bool is_file = std::filesystem::exists(words.source);
-  const bool is_of_take = is_file && is_take(words.source);
+  const bool is_of_take = is_file && config::is_take_file(words.source);
   if (!is_of_take && !words.scene.empty())
     throw UsageError("--scene chooses among the scenes of a take, and " + words.source +
                      " is none");

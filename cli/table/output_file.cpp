@@ -8,11 +8,15 @@
 
 #include "cli/command_line.h"
 #include "node/assert.h"
+#include "node/config/regular_file.h"
 
 namespace cordis::cli {
 
-OutputFile::OutputFile(std::string path)
-    : path_(std::move(path)), file_(path_ == "-" ? stdout : std::fopen(path_.c_str(), "wb")) {
+OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
+  const std::string kept = config::kept_kind_of(path_);
+  if (!kept.empty())
+    throw UsageError("'" + path_ + "' is a " + kept + ", and is never overwritten");
+  file_ = path_ == "-" ? stdout : std::fopen(path_.c_str(), "wb");
   if (file_ == nullptr) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
 }
 

@@ -11,7 +11,8 @@ namespace cordis::cli {
 /// The file of a path, or stdout for `-`.
 class OutputFile {
  public:
-  /// Makes the file, empty. @throws UsageError when that is not possible.
+  /// Makes the file, empty. @throws UsageError when that is not possible, or would replace a YAML
+  /// file or a take.
   explicit OutputFile(std::string path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -32,7 +33,7 @@ class OutputFile {
   [[noreturn]] void fail() const;
 
   std::string path_;
-  std::FILE* file_;
+  std::FILE* file_ = nullptr;
   std::uint64_t size_ = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "cli/table/csv_file.h"
 #include "cli/table/npz_file.h"
+#include "node/config/regular_file.h"
 
 namespace cordis::cli {
 
@@ -44,13 +45,16 @@ void refuse_shared_files(const std::vector<NamedFile>& files) {
   }
 }
 
-void refuse_yaml_files(const std::vector<NamedFile>& outputs) {
+void refuse_overwriting(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read) {
   for (const NamedFile& file : outputs) {
-    const std::filesystem::path path = file.path;
-    std::error_code failure;
-    if ((path.extension() == ".yaml" || path.extension() == ".yml") &&
-        std::filesystem::exists(path, failure))
-      throw UsageError(file.word + " would overwrite the YAML file " + file.path);
+    if (file.path.empty() || file.path == "-") continue;
+    for (const NamedFile& source : read) {
+      if (are_one_file(file.path, source.path))
+        throw UsageError(file.word + " would overwrite " + source.word + " " + source.path);
+    }
+    const std::string kept = config::kept_kind_of(file.path);
+    if (!kept.empty())
+      throw UsageError(file.word + " would overwrite the " + kept + " " + file.path);
   }
 }
 
@@ -60,13 +64,8 @@ void refuse_shared_files(const TableOptions& options, const NamedFile& read,
       {"--csv", options.csv_file},       {"--npz", options.npz_file}, {"--wav", options.wav_file},
       {"--events", options.events_file}, {"--summary", summary_file}, {"--save-state", state_file},
   };
-  for (const NamedFile& file : files) {
-    const bool is_file = !file.path.empty() && file.path != "-";
-    if (is_file && are_one_file(file.path, read.path))
-      throw UsageError(file.word + " would overwrite " + read.word + " " + read.path);
-  }
   refuse_shared_files(files);
-  refuse_yaml_files({files.begin(), files.end() - 1});  // a state looks at what it replaces
+  refuse_overwriting({files.begin(), files.end() - 1}, {read});  // StateFile guards a state
   for (const NamedFile& file : {files[1], files[2]}) {
     if (file.path == "-") throw UsageError(file.word + " wants a file, not stdout");
   }

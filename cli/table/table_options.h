@@ -36,9 +36,10 @@ struct NamedFile {
 /// @throws UsageError when two words name one file, however they are written
 void refuse_shared_files(const std::vector<NamedFile>& files);
 
-/// A scene, its parts and its devices may lie in any YAML file, and no output is one.
-/// @throws UsageError when a word names an existing YAML file
-void refuse_yaml_files(const std::vector<NamedFile>& outputs);
+/// Scenes, parts and devices may lie in any YAML file, and a take cannot be made again.
+/// @param read  the files that the outputs are of, and what each is
+/// @throws UsageError when a word names one of these files, an existing YAML file or a take
+void refuse_overwriting(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
 
 /// @param read  the file that the table is of, and what it is: it is never written over
 /// @param summary_file  of --summary, for a verb that has it; else empty

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <string_view>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -13,6 +16,8 @@
 
 namespace cordis::config {
 namespace {
+
+constexpr std::string_view kTakeMagic = "\x89MCAP0\r\n";  // as mcap::kMagic
 
 /// What a file is that is no regular one.
 std::string kind_of(mode_t mode) {
@@ -64,10 +69,29 @@ std::filesystem::path path_below(const std::filesystem::path& folder,
   return end == folder.end() && rest != found.end() ? found : std::filesystem::path();
 }
 
+bool is_take_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  if (path.ends_with(".mcap") || path.ends_with(".mcap.part")) return true;
+  std::string begin(kTakeMagic.size(), '\0');
+  std::ifstream(path, std::ios::binary)
+      .read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kTakeMagic;
+}
+
+std::string kept_kind_of(const std::string& path) {
+  std::error_code ignored;
+  const bool is_yaml = path.ends_with(".yaml") || path.ends_with(".yml");
+  if (is_yaml && std::filesystem::is_regular_file(path, ignored)) return "YAML file";
+  return is_take_file(path) ? "take" : "";
+}
+
 std::string reason_not_to_write(const std::string& path) {
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return {};
-  return kind_of(status.st_mode);
+  if (stat(path.c_str(), &status) != 0) return {};
+  if (!S_ISREG(status.st_mode)) return kind_of(status.st_mode);
+  const std::string kept = kept_kind_of(path);
+  return kept.empty() ? "" : "it is a " + kept + ", and is never overwritten";
 }
 
 }  // namespace cordis::config

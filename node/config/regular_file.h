@@ -21,8 +21,15 @@ struct FileBytes {
 std::filesystem::path path_below(const std::filesystem::path& folder,
                                  const std::filesystem::path& path);
 
-/// Why a file cannot be written: it is there and no regular file, or a folder; empty when nothing
-/// speaks against it. Does not create it.
+/// True if it is a regular file that is a take: by its first bytes, or by its name alone when those
+/// are damaged.
+bool is_take_file(const std::string& path);
+
+/// What is never replaced by an output: "YAML file" or "take"; empty for any other path.
+std::string kept_kind_of(const std::string& path);
+
+/// Why a file cannot be written: it is there and no regular file, or one that is kept, or a folder;
+/// empty when nothing speaks against it. Does not create it.
 std::string reason_not_to_write(const std::string& path);
 
 }  // namespace cordis::config

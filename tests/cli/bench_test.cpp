@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <random>
@@ -11,14 +13,17 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "cli/bench/bench_networks.h"
 #include "cli/bench/bench_report.h"
 #include "cli/bench/bench_verb.h"
 #include "cli/bench/plain_loop.h"
 #include "cli/bench/turns.h"
+#include "cli/exit_code.h"
 #include "cli/run/status_board.h"
 #include "sim_node/engine/world.h"
+#include "tests/cli/captured_run.h"
 
 namespace cordis::cli {
 namespace {
@@ -185,6 +190,22 @@ TEST(Bench, WarnsOfAMachineThatWasNotQuiet) {
   EXPECT_EQ(bench_text(report).find("warning"), std::string::npos);
   report.engine.addition_at_end_s = 0.9e-9;
   EXPECT_NE(bench_text(report).find("warning: The clock of the core changed"), std::string::npos);
+}
+
+TEST(Bench, MeasuresNothingWhereAFileIsKept) {
+  const std::string take = testing::TempDir() + "bench_test." + std::to_string(getpid()) + ".mcap";
+  std::ofstream(take) << "a take";
+  for (const char* option : {"--json", "--chart"}) {
+    CommandLine line("cordis", "", "1");
+    add_bench_verb(line);
+    std::string out;
+    std::string error;
+    EXPECT_EQ(run_captured(line, {"bench", option, take}, out, error), kBadInput);
+    EXPECT_NE(error.find(option + (" would overwrite the take " + take)), std::string::npos)
+        << error;
+  }
+  EXPECT_EQ(std::filesystem::file_size(take), 6u);
+  std::filesystem::remove(take);
 }
 
 TEST(Bench, TheChartIsDrawn) {

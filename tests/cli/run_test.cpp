@@ -99,6 +99,16 @@ TEST(Run, NeverWritesOverItsLaunchFile) {
   EXPECT_EQ(end_of(*run), 2);
   EXPECT_TRUE(contains(run->output(), "--signals would overwrite the YAML file " + scene));
   EXPECT_EQ(std::filesystem::file_size(scene), 10u);
+
+  const std::string take = session.launch_file() + ".mcap";
+  std::ofstream(take) << "a take";
+  for (const char* option : {"--signals", "--summary"}) {
+    const auto other = session.start({option, take});
+    EXPECT_EQ(end_of(*other), 2);
+    EXPECT_TRUE(contains(other->output(), option + (" would overwrite the take " + take)))
+        << other->output();
+  }
+  EXPECT_EQ(std::filesystem::file_size(take), 6u);
 }
 
 TEST(Run, ShowsWhatAllNodesObjectToAndStartsNone) {

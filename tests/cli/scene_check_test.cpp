@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -795,6 +796,25 @@ TEST_F(Checked, AHandAtAPortOfRoleLiaisonHasNoLimitOfItsViscosityWithoutDelay) {
   EXPECT_NE(out_.find(" N/m and as its own viscosity divided by 100 ms, at 10 Hz and 1 period"),
             std::string::npos)
       << out_;
+}
+
+TEST_F(Checked, TheReportForAProgramReplacesNoSceneAndNoTake) {
+  write("100");
+  const auto size = std::filesystem::file_size(path_);
+  EXPECT_EQ(run({"--json", path_}), kBadInput);
+  EXPECT_NE(error_.find("--json would overwrite its own file " + path_), std::string::npos)
+      << error_;
+  EXPECT_EQ(out_, "");
+  const std::string other = path_ + ".other.yaml";
+  const std::string take = path_ + ".mcap";
+  for (const std::string& kept : {other, take}) {
+    std::ofstream(kept) << "kept";
+    EXPECT_EQ(run({"--json", kept}), kBadInput);
+    EXPECT_NE(error_.find("--json would overwrite the "), std::string::npos) << error_;
+    EXPECT_EQ(std::filesystem::file_size(kept), 4u);
+    std::filesystem::remove(kept);
+  }
+  EXPECT_EQ(std::filesystem::file_size(path_), size);
 }
 
 TEST_F(Checked, WrongWordsAndFilesAreBadInput) {

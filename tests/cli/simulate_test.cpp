@@ -643,12 +643,18 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
       {{scene, "--duration", "1s", "--csv", scene}, "--csv would overwrite its own file"},
       {{put("other.yaml", kFalling), "--duration", "1s", "--csv", scene},
        "--csv would overwrite the YAML file"},
+      {{scene, "--duration", "1s", "--csv", put("t.mcap", "")}, "--csv would overwrite the take"},
+      {{scene, "--duration", "1s", "--npz", put("t.mcap.part", "")},
+       "--npz would overwrite the take"},
+      {{scene, "--duration", "1s", "--summary", put("t.json", "\x89MCAP0\r\n and more")},
+       "--summary would overwrite the take"},
   };
   for (const auto& [words, sentence] : cases) {
     EXPECT_EQ(run(words), kBadInput) << sentence;
     EXPECT_THAT(error_, HasSubstr(sentence));
   }
   EXPECT_EQ(text_of("fall.yaml"), kFalling);
+  EXPECT_EQ(text_of("t.json"), "\x89MCAP0\r\n and more");
 }
 
 TEST_F(Simulate, CtrlCEndsASceneThatSettlesForLong) {

@@ -1,14 +1,21 @@
-// tests/cli/table_test.cpp -- numbers on their way to a file.
+// tests/cli/table_test.cpp -- numbers on their way to a file, and files that stay.
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include "cli/command_line.h"
 #include "cli/table/csv_file.h"
+#include "cli/table/output_file.h"
 
 namespace cordis::cli {
 namespace {
@@ -44,6 +51,27 @@ TEST(CsvText, StandsInQuotesWhereItNeedsThem) {
   append_text(text, "a[2]");
   append_text(text, R"(a,"b")");
   EXPECT_EQ(text, R"(a[2]"a,""b""")");
+}
+
+TEST(OutputFile, ReplacesNoYamlFileAndNoTakeWhateverTheTakeIsCalled) {
+  const std::string name = testing::TempDir() + "table_test." + std::to_string(getpid());
+  const std::string take = "\x89MCAP0\r\n";
+  const std::vector<std::pair<std::string, std::string>> kept{{".yaml", "a: 1"},
+                                                              {".yml", "a: 1"},
+                                                              {".mcap", "torn"},
+                                                              {".mcap.part", ""},
+                                                              {".csv", take + "and more"}};
+  for (const auto& [ending, bytes] : kept) {
+    const std::string path = name + ending;
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_THROW(OutputFile file(path), UsageError) << path;
+    EXPECT_EQ(std::filesystem::file_size(path), bytes.size()) << path;
+    std::filesystem::remove(path);
+    EXPECT_NO_THROW(OutputFile file(path)) << "nothing is there";
+    std::filesystem::remove(path);
+  }
+  for (int n = 0; n < 2; ++n) EXPECT_NO_THROW(OutputFile file(name)) << "its own earlier table";
+  std::filesystem::remove(name);
 }
 
 }  // namespace

@@ -383,19 +383,22 @@ TEST_F(TakeExport, HasNoValuesOfDevicesBehindInputsThatAreLost) {
               testing::ElementsAre("sim_node lost inputs: from there on devices have no values"));
 }
 
-TEST_F(TakeExport, NeverWritesOverTheTake) {
+TEST_F(TakeExport, NeverWritesOverATake) {
   const std::string before = text_of("take.mcap");
   std::filesystem::create_symlink(path("take.mcap"), path("link.csv"));
+  std::filesystem::copy_file(path("take.mcap"), path("other.csv"));
   const mcap::Reader take(path("take.mcap"));
   for (const auto file : {&ExportOptions::csv_file, &ExportOptions::npz_file,
                           &ExportOptions::wav_file, &ExportOptions::events_file}) {
-    for (const std::string& name : {path("take.mcap"), path("./take.mcap"), path("link.csv")}) {
+    for (const std::string& name :
+         {path("take.mcap"), path("./take.mcap"), path("link.csv"), path("other.csv")}) {
       ExportOptions options;
       options.*file = name;
       EXPECT_THROW(export_take(take, options), UsageError) << name;
     }
   }
   EXPECT_EQ(text_of("take.mcap"), before);
+  EXPECT_EQ(text_of("other.csv"), before) << "another take";
 }
 
 TEST_F(TakeExport, NamesTheTakeThatNoRecorderHasClosed) {

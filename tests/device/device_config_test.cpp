@@ -2,9 +2,11 @@
 #include "device_node/device_config.h"
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "device_node/drivers/driver_table.h"
 #include "node/config/name_hash.h"
@@ -220,6 +222,17 @@ TEST(DeviceConfig, SaysOneThingOfAGestureThatIsNone) {
   EXPECT_NE(problems.find("device.yaml:2:31: error: 'kind' in gesture"), std::string::npos);
   EXPECT_NE(problems.find("did you mean 'pluck'?"), std::string::npos) << problems;
   EXPECT_EQ(problems.find("error: "), problems.rfind("error: ")) << problems;
+}
+
+TEST(DeviceConfig, ItsTraceReplacesNoYamlFileAndNoTake) {
+  for (const char* ending : {".yaml", ".mcap"}) {
+    const std::string file =
+        testing::TempDir() + "device_trace." + std::to_string(getpid()) + ending;
+    std::ofstream(file) << "kept";
+    EXPECT_NE(problems_of("axes: 1\ntrace: {file: " + file + "}").find("and is never overwritten"),
+              std::string::npos);
+    std::filesystem::remove(file);
+  }
 }
 
 struct BadDevice {
