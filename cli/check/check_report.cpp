@@ -465,9 +465,9 @@ nlohmann::json ports_json(const SceneCheck& check) {
   return ports;
 }
 
-nlohmann::json problems_json(const config::Problems& problems) {
+nlohmann::json problems_json(const std::vector<config::Problem>& problems) {
   nlohmann::json list = nlohmann::json::array();
-  for (const config::Problem& problem : problems.in_order()) {
+  for (const config::Problem& problem : problems) {
     const bool is_error = problem.severity == config::Problem::Severity::kError;
     list.push_back({{"severity", is_error ? "error" : "warning"},
                     {"file", problem.place.file},
@@ -535,7 +535,9 @@ std::string text_of(const SceneCheck& check) {
   return check.measured_steps > 0 ? text + load_text(check) : text;
 }
 
-std::string json_of(const SceneCheck& check) {
+std::string json_of(const SceneCheck& check, const std::vector<config::Problem>& others) {
+  std::vector<config::Problem> problems = check.problems.in_order();
+  problems.insert(problems.end(), others.begin(), others.end());
   const plan::Stability& stability = check.plan.stability;
   const plan::BandEdge& edge = check.plan.band_edge;
   const plan::OscillatorError& swing = edge.swinging ? *edge.swinging : edge.error;
@@ -563,7 +565,7 @@ std::string json_of(const SceneCheck& check) {
                         {"decay_error", swing.decay},
                         {"leaves_signals_out", leaves_signals_out(check)}}},
                       {"ports", ports_json(check)},
-                      {"problems", problems_json(check.problems)},
+                      {"problems", problems_json(problems)},
                       {"reductions", reductions_json(check.scene.reductions)}};
   if (const auto& settled = check.scene.settled) {
     json["settled"] = {{"steps", settled->steps},

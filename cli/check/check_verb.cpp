@@ -5,10 +5,9 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
-#include <stdexcept>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -21,6 +20,7 @@
 #include "cli/run/node_check.h"
 #include "cli/run/run_plan.h"
 #include "cli/run/stop_signals.h"
+#include "cli/table/output_file.h"
 #include "cli/table/table_options.h"
 #include "node/config/regular_file.h"
 #include "node/terminal_text.h"
@@ -31,61 +31,16 @@ namespace {
 /// Takes the report of a file for a program.
 using PutJson = std::function<void(const std::string& json)>;
 
-void write_json(const std::string& file_name, const std::string& json) {
-  if (file_name.empty()) return;
-  if (file_name == "-") {
-    std::fputs(json.c_str(), stdout);
-    return;
-  }
-  std::ofstream file(file_name);
-  file << json << std::flush;
-  if (!file) throw std::runtime_error("cannot write " + file_name);
-}
-
 /// Lets the nodes beside sim_node check their files, as a run does before it begins.
-int check_other_nodes(const config::Launch& launch, const std::vector<std::string>& overrides) {
+NodeCheck check_other_nodes(const config::Launch& launch,
+                            const std::vector<std::string>& overrides) {
   RunOptions options;
   options.launch_file = launch.file;
   options.overrides = overrides;
   RunPlan plan = plan_run(launch, options, program_directory());
   std::erase_if(plan.nodes, [](const PlannedNode& node) { return node.program == "sim_node"; });
   StopSignals signals;
-  return check_nodes(plan, signals).value_or(kSuccess);
-}
-
-/// Everything that is wrong in the files of all nodes, before it throws.
-SceneCheck check_scene_and_nodes(const CheckOptions& options) {
-  try {
-    return check_scene(options);
-  } catch (const config::ConfigError& error) {
-    if (!options.plan_alone && !options.text)
-      check_faulty_launch(options.file, options.overrides, error.problems(), /*with_sim=*/false);
-    throw;
-  }
-}
-
-int check_take(const CheckOptions& options, const PutJson& put_json) {
-  const TakeReport report = check_take_file(options.file);
-  if (options.json_file != "-") node::print_text(stdout, report.text);
-  put_json(report.json);
-  return report.whole ? kSuccess : kBadInput;
-}
-
-int check_file(const CheckOptions& options, const PutJson& put_json) {
-  if (!options.text && config::is_take_file(options.file)) return check_take(options, put_json);
-  const SceneCheck check = check_scene_and_nodes(options);
-  if (options.json_file != "-") {
-    node::print_text(stdout, text_of(check));
-    if (check.launch && options.text && !options.plan_alone)
-      std::puts("nodes       not asked: the files of devices are checked with a launch FILE alone");
-  }
-  put_json(json_of(check));
-  const std::string problems = check.problems.text();
-  std::fflush(stdout);
-  if (!problems.empty()) node::print_text(stderr, problems + "\n");
-  const bool asks_others = check.launch && !options.plan_alone && !options.text;
-  const int others = asks_others ? check_other_nodes(*check.launch, options.overrides) : kSuccess;
-  return check.problems.has_errors() ? kBadInput : others;
+  return check_nodes(plan, signals);
 }
 
 /// A file that cannot be checked, for a person and for a program.
@@ -99,28 +54,75 @@ int report_failure(const std::string& file, const std::string& reason, int code,
   return code;
 }
 
+int check_take(const CheckOptions& options, const PutJson& put_json) {
+  const TakeReport report = check_take_file(options.file);
+  if (options.json_file != "-") node::print_text(stdout, report.text);
+  put_json(report.json);
+  return report.whole ? kSuccess : kBadInput;
+}
+
+/// @throws UsageError with all that is wrong in the files of all nodes
+SceneCheck check_scene_and_nodes(const CheckOptions& options) {
+  try {
+    return check_scene(options);
+  } catch (const config::ConfigError& error) {
+    if (options.plan_alone || options.text) throw;
+    const std::string others =
+        check_faulty_launch(options.file, options.overrides, error.problems(), /*with_sim=*/false);
+    throw UsageError(others + error.what());
+  }
+}
+
+int check_scene_file(const CheckOptions& options, const PutJson& put_json) {
+  const SceneCheck check = check_scene_and_nodes(options);
+  if (options.json_file != "-") {
+    node::print_text(stdout, text_of(check));
+    if (check.launch && options.text && !options.plan_alone)
+      std::puts("nodes       not asked: the files of devices are checked with a launch FILE alone");
+  }
+  const std::string problems = check.problems.text();
+  std::fflush(stdout);
+  if (!problems.empty()) node::print_text(stderr, problems + "\n");
+  const bool asks_others = check.launch && !options.plan_alone && !options.text;
+  NodeCheck others;
+  if (asks_others) others = check_other_nodes(*check.launch, options.overrides);
+  node::print_text(stderr, others.said);
+  put_json(json_of(check, others.problems));
+  return check.problems.has_errors() ? kBadInput : others.refused.value_or(kSuccess);
+}
+
+/// What is wrong with the file stands in the report too.
+int check_file(const CheckOptions& options, const PutJson& put_json) {
+  try {
+    if (!options.text && config::is_take_file(options.file)) return check_take(options, put_json);
+    return check_scene_file(options, put_json);
+  } catch (const config::ConfigError& error) {
+    return report_failure(options.file, error.what(), kBadInput, put_json);
+  } catch (const UsageError& error) {
+    return report_failure(options.file, error.what(), kBadInput, put_json);
+  } catch (const std::exception& error) {
+    return report_failure(options.file, error.what(), kFailure, put_json);
+  }
+}
+
 /// One report per file; what is wrong with one hinders no other. @return the highest exit code
-int check_files(const CheckOptions& common, const std::vector<CheckOptions>& files) {
-  std::string list;
-  const PutJson put_json = [&list](const std::string& json) {
-    list += (list.empty() ? "[\n" : ",\n") + json.substr(0, json.size() - 1);
+int check_files(const std::vector<CheckOptions>& files) {
+  const std::string& json_file = files.front().json_file;
+  std::optional<OutputFile> output;
+  if (!json_file.empty()) output.emplace(json_file);
+  std::string reports;
+  const PutJson put_json = [&reports](const std::string& json) {
+    reports += (reports.empty() ? "" : ",\n") + json.substr(0, json.size() - 1);
   };
   int worst = kSuccess;
   for (const CheckOptions& options : files) {
-    if (&options != &files.front() && common.json_file != "-") std::puts("");
-    int code = kSuccess;
-    try {
-      code = check_file(options, put_json);
-    } catch (const config::ConfigError& error) {
-      code = report_failure(options.file, error.what(), kBadInput, put_json);
-    } catch (const UsageError& error) {
-      code = report_failure(options.file, error.what(), kBadInput, put_json);
-    } catch (const std::exception& error) {
-      code = report_failure(options.file, error.what(), kFailure, put_json);
-    }
-    worst = std::max(worst, code);
+    if (&options != &files.front() && json_file != "-") std::puts("");
+    worst = std::max(worst, check_file(options, put_json));
   }
-  write_json(common.json_file, list + "\n]\n");
+  if (output) {
+    output->write(files.size() > 1 ? "[\n" + reports + "\n]\n" : reports + "\n");
+    output->flush();
+  }
   return worst;
 }
 
@@ -213,9 +215,7 @@ void add_check_verb(CommandLine& line) {
     if (!words->band.empty()) asked.band_hz = parse_number("--band", words->band, 1e-3, 1e6);
     const std::vector<CheckOptions> files = files_of(asked, words->more);
     refuse_overwritten_files(files);
-    if (files.size() > 1) return check_files(asked, files);
-    return check_file(files.front(),
-                      [&](const std::string& json) { write_json(asked.json_file, json); });
+    return check_files(files);
   });
 }
 

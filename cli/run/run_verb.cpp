@@ -30,7 +30,8 @@ config::Launch read_launch(const RunOptions& options) {
   config::Problems problems;
   config::Launch launch = config::load_launch(options.launch_file, options.overrides, problems);
   if (problems.has_errors())
-    check_faulty_launch(options.launch_file, options.overrides, problems.all(), /*with_sim=*/true);
+    node::print_text(stderr, check_faulty_launch(options.launch_file, options.overrides,
+                                                 problems.all(), /*with_sim=*/true));
   problems.throw_if_any();
   for (const config::Problem& warning : problems.all()) {
     node::print_text(stderr, warning.text() + "\n");
@@ -92,7 +93,9 @@ int run(const RunOptions& options) {
              .c_str(),
          /*replace=*/1);
   if (!launch.domain) name_domain(plan, registration.domain());
-  if (const std::optional<int> refused = check_nodes(plan, signals)) return *refused;
+  const NodeCheck check = check_nodes(plan, signals);
+  node::print_text(stderr, check.said);
+  if (check.refused) return *check.refused;
   refuse_running_nodes(plan, launch.session, registration.domain());
   return run_session(launch, plan, options, registration, network, security, signals);
 }

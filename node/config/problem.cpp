@@ -2,6 +2,9 @@
 #include "node/config/problem.h"
 
 #include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <system_error>
 #include <tuple>
 
 #include "node/config/count_text.h"
@@ -60,6 +63,10 @@ std::string line_with_caret(const std::string& source_line, int column) {
   return line + below + "^";
 }
 
+std::string word_of(Problem::Severity severity) {
+  return severity == Problem::Severity::kError ? "error: " : "warning: ";
+}
+
 std::string text_of(const std::vector<Problem>& problems) {
   std::string text;
   for (const Problem& problem : problems) {
@@ -67,6 +74,46 @@ std::string text_of(const std::vector<Problem>& problems) {
     text += problem.text();
   }
   return text;
+}
+
+bool has_caret_alone(const std::string& line) {
+  return line.ends_with('^') && line.find_first_not_of(" \t") + 1 == line.size();
+}
+
+/// "file:3:7" or "file"
+Place place_named(const std::string& text) {
+  const std::size_t second = text.rfind(':');
+  const std::size_t first =
+      second == std::string::npos || second == 0 ? std::string::npos : text.rfind(':', second - 1);
+  if (first == std::string::npos) return {text, 0, 0};
+  Place place{text.substr(0, first), 0, 0};
+  const auto read = [&text](std::size_t from, std::size_t to, int& number) {
+    const char* end = text.data() + to;
+    const auto [rest, fault] = std::from_chars(text.data() + from, end, number);
+    return fault == std::errc{} && rest == end;
+  };
+  const bool is_placed =
+      read(first + 1, second, place.line) && read(second + 1, text.size(), place.column);
+  return is_placed ? place : Place{text, 0, 0};
+}
+
+/// The first line of a problem; nothing when this is none.
+std::optional<Problem> problem_that_begins(const std::string& line) {
+  std::optional<Problem> problem;
+  std::size_t first = std::string::npos;
+  for (const auto severity : {Problem::Severity::kError, Problem::Severity::kWarning}) {
+    const std::string word = word_of(severity);
+    const std::size_t behind = line.find(": " + word);
+    const std::size_t begin = line.starts_with(word) ? 0 : behind;
+    if (begin >= first) continue;
+    first = begin;
+    const std::size_t message = line.find(word, begin) + word.size();
+    problem.emplace();
+    problem->severity = severity;
+    problem->place = place_named(line.substr(0, begin));
+    problem->message = line.substr(message);
+  }
+  return problem;
 }
 
 }  // namespace
@@ -77,11 +124,29 @@ std::string Problem::text() const {
     text += ':' + std::to_string(place.line) + ':' + std::to_string(place.column);
   }
   if (!text.empty()) text += ": ";
-  text += severity == Severity::kError ? "error: " : "warning: ";
+  text += word_of(severity);
   text += without_control_characters(message);
   if (!source_line.empty()) text += line_with_caret(source_line, place.column);
   if (!hint.empty()) text += "\n  hint: " + without_control_characters(hint);
   return text;
+}
+
+std::vector<Problem> problems_in(const std::string& text) {
+  static const std::string kHint = "  hint: ";
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i + 1 < lines.size() && has_caret_alone(lines[i + 1])) {
+      ++i;  // a line of the file may look like a problem
+    } else if (lines[i].starts_with(kHint) && !problems.empty()) {
+      problems.back().hint = lines[i].substr(kHint.size());
+    } else if (auto problem = problem_that_begins(lines[i])) {
+      problems.push_back(std::move(*problem));
+    }
+  }
+  return problems;
 }
 
 ConfigError::ConfigError(std::vector<Problem> problems)

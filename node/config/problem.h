@@ -36,6 +36,10 @@ struct Problem {
   std::string text() const;
 };
 
+/// The problems in a text that Problem::text() has made, without the lines of their files; lines that
+/// belong to none are left out.
+std::vector<Problem> problems_in(const std::string& text);
+
 /// The text of a file, without carriage returns.
 struct SourceFile {
   std::string path;

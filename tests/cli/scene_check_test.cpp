@@ -817,6 +817,29 @@ TEST_F(Checked, TheReportForAProgramReplacesNoSceneAndNoTake) {
   EXPECT_EQ(std::filesystem::file_size(path_), size);
 }
 
+TEST_F(Checked, AProgramReadsWhyASingleFileIsRefused) {
+  const auto error_of = [this](const std::vector<std::string>& words) {
+    EXPECT_EQ(run(words), kBadInput);
+    const nlohmann::json json = nlohmann::json::parse(out_, nullptr, /*allow_exceptions=*/false);
+    EXPECT_EQ(json.value("file", ""), path_) << out_;
+    return json.value("error", "");
+  };
+  write("100", "tuning: 440\n");
+  EXPECT_NE(error_of({"--json", "-"}).find("unknown key 'tuning'"), std::string::npos);
+  EXPECT_NE(error_.find("unknown key 'tuning'"), std::string::npos) << error_;
+  std::ofstream(path_) << "cordis: [";
+  EXPECT_NE(error_of({"--json", "-"}).find(path_ + ":"), std::string::npos);
+  std::remove(path_.c_str());
+  EXPECT_NE(error_of({"--json", "-"}).find("cannot be read"), std::string::npos);
+
+  const std::string file = path_ + ".json";
+  EXPECT_EQ(run({"--json", file}), kBadInput);
+  nlohmann::json json;
+  std::ifstream(file) >> json;
+  EXPECT_EQ(json["file"], path_);
+  std::remove(file.c_str());
+}
+
 TEST_F(Checked, WrongWordsAndFilesAreBadInput) {
   write("100");
   EXPECT_EQ(run({"--band", "loud"}), kBadInput);

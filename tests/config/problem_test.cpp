@@ -1,6 +1,9 @@
 // tests/config/problem_test.cpp
 #include "node/config/problem.h"
 
+#include <algorithm>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "node/config/name_hash.h"
@@ -26,6 +29,26 @@ TEST(Problem, ShowsPlaceLineCaretAndHint) {
     arg: [--dt, 0.001]
     ^
   hint: did you mean 'args'?)");
+}
+
+TEST(Problem, IsReadAgainFromItsText) {
+  Problems problems;
+  problems.remember_source("c:1:2.yaml", "a.yaml: error: in the file\nb\n");
+  problems.error({"c:1:2.yaml", 1, 9}, "a name: error: twice", "write it once");
+  problems.warning({"c:1:2.yaml", 2, 1}, "warning: is a word");
+  problems.warning({"no line", 0, 0}, "is old");
+  problems.error({}, "nothing works");
+
+  const std::vector<Problem> read = problems_in("starting\n" + problems.text() + "\nends\n");
+
+  ASSERT_EQ(read.size(), problems.all().size());
+  for (const Problem& known : problems.in_order()) {
+    const auto same = [&known](const Problem& one) {
+      return one.severity == known.severity && one.place == known.place &&
+             one.message == known.message && one.hint == known.hint;
+    };
+    EXPECT_TRUE(std::any_of(read.begin(), read.end(), same)) << known.text();
+  }
 }
 
 TEST(Problem, WithoutALineIsOneLine) {

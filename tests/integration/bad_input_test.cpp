@@ -173,6 +173,19 @@ TEST(BadInput, AllProblemsOfAllNodesAreReportedAtOnce) {
   expect_bad_file(outcome, "key.yaml:2:", "axes");
 }
 
+TEST(BadInput, AProgramReadsWhatTheOtherNodesObjectTo) {
+  LiveSession session("lockstep", kSimAndKey);
+  session.add_file("scene.yaml", wall_scene(1));
+  ChildProcess check({program_path("cordis"), "check", session.launch_file(), "--json", "-"});
+  EXPECT_EQ(check.wait(kPatience), 2);
+  check.wait_for_end_of_output(kPatience);
+  const std::string said = check.output();
+  const std::size_t problems = said.find("\"problems\": [");
+  ASSERT_NE(problems, std::string::npos) << said;
+  const std::size_t sentence = said.find("\"message\": \"cannot be read: ", problems);
+  EXPECT_LT(sentence, said.find(']', problems)) << said;
+}
+
 /// The lines that name a problem, in order.
 std::vector<std::string> problems_in(const std::string& output) {
   std::vector<std::string> problems;
