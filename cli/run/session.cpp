@@ -75,6 +75,7 @@ class Session : public Watcher {
         killed_(plan.nodes.size(), false),
         restarts_(plan.nodes.size(), 0),
         is_down_(plan.nodes.size(), false),
+        failures_(plan.nodes.size()),
         started_(Clock::now()) {
     for (const PlannedNode& node : plan.nodes)
       is_needed_.push_back(node.required || (options.records && node.name == kRecorder));
@@ -126,7 +127,7 @@ class Session : public Watcher {
     registration_.remove_node(node.name);
     const bool failed = ending.exit_code() != kSuccess;
     if (node.required && result_ == kSuccess) result_ = ending.exit_code();
-    if (failed && is_needed_[process]) has_lost_node_ = true;
+    if (failed) failures_[process] = ending.text();
     if (stopping) {
       if (failed && !killed_[process]) output_.say(node.name + ": " + ending.text());
       return node.required;
@@ -180,7 +181,7 @@ class Session : public Watcher {
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (is_down_[i]) output_.print(names[i] + " was down at the end");
-      if (is_needed_[i] && (is_down_[i] || has_failed(names[i]))) has_lost_node_ = true;
+      if (is_lost(i)) has_lost_node_ = true;
     }
     if (has_lost_node_ && result_ == kSuccess) result_ = kFailure;
     if (has_lost_node_ && failure_ == kSuccess) failure_ = kFailure;
@@ -199,6 +200,12 @@ class Session : public Watcher {
     return status != nullptr && status->phase() == msg::PHASE_FAILED;
   }
 
+  /// True if the run needs the node, and did not keep it to the end.
+  bool is_lost(std::size_t process) const {
+    return is_needed_[process] && (is_down_[process] || !failures_[process].empty() ||
+                                   has_failed(plan_.nodes[process].name));
+  }
+
   /// How each node stood at the end, for the summary.
   std::vector<NodeEnd> ends_of_nodes() const {
     std::vector<NodeEnd> ends;
@@ -206,10 +213,11 @@ class Session : public Watcher {
       const PlannedNode& node = plan_.nodes[i];
       const msg::NodeStatus* status = board_.find(node.name);
       NodeEnd& end = ends.emplace_back(NodeEnd{.name = node.name, .program = node.program});
-      end.has_failed = is_needed_[i] && (is_down_[i] || has_failed(node.name));
-      if (is_down_[i]) end.reason = "was down at the end";
+      end.has_failed = is_lost(i);
+      end.reason = is_down_[i] ? "was down at the end" : failures_[i];
+      if (!failures_[i].empty()) end.phase = node::word_of(msg::PHASE_FAILED);
       if (status == nullptr) continue;
-      end.phase = node::word_of(status->phase());
+      if (failures_[i].empty()) end.phase = node::word_of(status->phase());
       const bool is_device = status->kind() == msg::KIND_DEVICE_NODE;
       if (has_failed(node.name) || (is_device && node::has_ended(status->phase())))
         end.reason = status->text();
@@ -330,7 +338,8 @@ class Session : public Watcher {
   std::vector<bool> killed_;
   std::vector<bool> is_needed_;  // the run fails without it
   std::vector<std::uint64_t> restarts_;
-  std::vector<bool> is_down_;  // waits to be started again
+  std::vector<bool> is_down_;          // waits to be started again
+  std::vector<std::string> failures_;  // how a node ended that failed; else empty
   Clock::time_point started_;
   std::optional<Clock::time_point> counted_from_;
   bool stopped_ = false;        // a required node, the duration or a signal has ended the session

@@ -112,7 +112,8 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
     report(status.overflowed_steps(), node::kOverflowedSteps);
     report(status.forgotten_pairs(), node::kForgottenPairs);
     report(status.refused_inputs(), node::kRefusedInputs);
-    text += fmt::format("state hash {:016x} after {}\n", status.state_hash(),
+    text += fmt::format("{}state hash {:016x} after {}\n",
+                        node::has_ended(status.phase()) ? "" : "last known ", status.state_hash(),
                         config::count_text(status.step(), "step"));
   }
   return text;

@@ -62,7 +62,7 @@ class StatusBoard {
 /// A line per node in the order of `nodes`. It has the rate reached, overruns, latency, energy
 /// drift, late ticks by their cause, and those without an answer of the other side. Lines of a
 /// simulation follow: its running account, and its state as `state hash 0123456789abcdef after N
-/// steps`. Of a device there is what its hand was given, of a node that failed the reason. The text
+/// steps`; of one that did not say that it ended it is the `last known` state. Of a device there is what its hand was given, of a node that failed the reason. The text
 /// ends with a newline.
 std::string status_table(const std::vector<std::string>& nodes, const StatusBoard& board);
 

@@ -227,8 +227,27 @@ TEST(Run, ShowsThePageAndEndsWithATable) {
   run->signal(SIGINT);
   EXPECT_EQ(end_of(*run), 0);
   EXPECT_TRUE(contains(run->output(), "\nnode  rate [Hz]  wanted  overruns"));
-  EXPECT_TRUE(contains(run->output(), "\nstate hash 0123456789abcdef after 4711 steps\n"));
+  EXPECT_TRUE(
+      contains(run->output(), "\nlast known state hash 0123456789abcdef after 4711 steps\n"))
+      << "the fake sim never says that it ended";
   EXPECT_TRUE(contains(run->output(), "\nkey   no status was received\n"));
+}
+
+TEST(Run, IsNotCompleteWhereANodeThatItNeedsWasKilled) {
+  for (const char* clock : {"lockstep", "realtime"}) {
+    FakeSession session;
+    session.clock(clock);
+    session.node("sim", "run;pid");
+    const std::string summary = session.directory() / "summary.json";
+    const auto run = session.start({"--summary", summary});
+    ASSERT_TRUE(run->wait_for_output("sim    | pid", kPatience));
+    kill(pids_in(run->output())[0], SIGKILL);
+    EXPECT_EQ(end_of(*run), 128 + SIGKILL);
+    const std::string text = text_of(summary);
+    EXPECT_TRUE(contains(text, R"("complete": false)")) << text;
+    EXPECT_TRUE(contains(text, R"("phase": "failed")")) << text;
+    EXPECT_TRUE(contains(text, R"("reason": "killed by signal 9)")) << text;
+  }
 }
 
 /// Runs a session for 100 ms. The launcher waits 5 s for all nodes to run, and says when that was

@@ -130,6 +130,7 @@ TEST(StatusTable, ReportsRateOverrunsLatencyDriftAndState) {
   sim.certified_partners(12);
   sim.step(10000);
   sim.state_hash(0x0123456789abcdefull);
+  sim.phase(msg::PHASE_STOPPED);
   board.put(sim);
   msg::NodeStatus key = status_of("keyboard", msg::KIND_DEVICE_NODE, 1);
   key.target_rate_hz(1000);
@@ -258,7 +259,12 @@ TEST(StatusTable, WritesTheWholeHash) {
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
   sim.state_hash(0xab);
   board.put(sim);
-  EXPECT_NE(status_table({"sim"}, board).find("state hash 00000000000000ab after 0 steps\n"),
+  EXPECT_NE(
+      status_table({"sim"}, board).find("\nlast known state hash 00000000000000ab after 0 steps\n"),
+      std::string::npos);
+  sim.phase(msg::PHASE_STOPPED);
+  board.put(sim);
+  EXPECT_NE(status_table({"sim"}, board).find("\nstate hash 00000000000000ab after 0 steps\n"),
             std::string::npos);
 }
 
