@@ -98,6 +98,8 @@ void add_hz_verb(CommandLine& line) {
   verb.examples(
       "A table each second, until Ctrl-C: messages per second, the shortest and the longest time\n"
       "between two of one writer as they came here, and numbers of writers that did not come.\n"
+      "What was written before the reading began, and comes again for late readers, is not "
+      "counted.\n"
       "Exit code: 0 done, 1 no such session or no message, 2 bad command line.\n\n"
       "Examples:\n"
       "  cordis hz plucked_string\n"

@@ -4,17 +4,30 @@
 #include <algorithm>
 
 namespace cordis::cli {
+namespace {
+
+/// What is kept comes again within this time of the first message. A host whose clock is behind looks
+/// as if it sent such messages for longer [ns].
+constexpr std::int64_t kLongestReplay = 1'000'000'000;
+
+}  // namespace
 
 void Traffic::add(const ReceivedMessage& message) {
   const auto [found, is_new] = writers_.try_emplace(message.writer);
   Writer& writer = found->second;
   if (is_new) {
-    writer.since_nsec = message.reception_nsec;
-  } else {
-    ++writer.messages;
-    writer.bytes += message.size;
-    missing_ += message.missing;
-    const double interval = static_cast<double>(message.reception_nsec - writer.last_nsec) * 1e-9;
+    writer.first_nsec = writer.since_nsec = message.reception_nsec;
+    return;
+  }
+  const bool was_kept = message.source_nsec < writer.first_nsec &&
+                        message.reception_nsec < writer.first_nsec + kLongestReplay;
+  if (was_kept) return;
+  ++writer.messages;
+  writer.bytes += message.size;
+  missing_ += message.missing;
+  const std::int64_t interval_nsec = message.reception_nsec - writer.last_nsec;
+  if (writer.last_nsec > 0 && interval_nsec >= 0) {
+    const double interval = static_cast<double>(interval_nsec) * 1e-9;
     shortest_s_ = intervals_ == 0 ? interval : std::min(shortest_s_, interval);
     longest_s_ = std::max(longest_s_, interval);
     ++intervals_;

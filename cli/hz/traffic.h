@@ -9,7 +9,8 @@
 namespace cordis::cli {
 
 /// Counts the messages of a topic since the last table, by the time at which they came. The first
-/// message of a writer begins its time: it is in no rate.
+/// message of a writer begins its time: it is in no rate. So is nothing that was written before it
+/// came: a late reader is sent again what is kept for it, at once.
 class Traffic {
  public:
   void add(const ReceivedMessage& message);
@@ -28,7 +29,8 @@ class Traffic {
 
  private:
   struct Writer {
-    std::int64_t last_nsec = 0;
+    std::int64_t first_nsec = 0;
+    std::int64_t last_nsec = 0;   // of those that are counted; 0: none
     std::int64_t since_nsec = 0;  // the rate counts from here
     std::uint64_t messages = 0;   // after that
     std::uint64_t bytes = 0;      // likewise

@@ -1,6 +1,8 @@
 // tests/cli/traffic_test.cpp -- the rates that `cordis hz` prints.
 #include "cli/hz/traffic.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace cordis::cli {
@@ -13,6 +15,7 @@ ReceivedMessage message(std::uint8_t writer, std::uint64_t sequence, std::int64_
   received.writer[0] = writer;
   received.sequence = sequence;
   received.reception_nsec = msec * kMsec;
+  received.source_nsec = received.reception_nsec - 1000;
   received.size = 100;
   return received;
 }
@@ -31,6 +34,41 @@ TEST(Traffic, TheTimeOfAWriterBeginsWithItsFirstMessage) {
     traffic.add(message(1, 7 + i, 40 + 10 * static_cast<std::int64_t>(i)));
   EXPECT_DOUBLE_EQ(traffic.messages_per_s(640 * kMsec), 100.0);
   EXPECT_DOUBLE_EQ(traffic.longest_s(), 0.01) << "the one over the table, too";
+}
+
+TEST(Traffic, LeavesOutWhatIsSentAgainToALateReader) {
+  Traffic traffic;
+  for (std::int64_t i = 0; i <= 200; ++i) {
+    const auto sequence = static_cast<std::uint64_t>(i) + 1;
+    // Written every 10 ms; the first hundred come at once, at 1000 ms.
+    ReceivedMessage one = message(1, sequence, std::max<std::int64_t>(10 * i, 1000));
+    one.source_nsec = 10 * i * kMsec;
+    traffic.add(one);
+  }
+  EXPECT_NEAR(traffic.messages_per_s(2000 * kMsec), 100.0, 1.5);
+  EXPECT_DOUBLE_EQ(traffic.shortest_s(), 0.01);
+  EXPECT_DOUBLE_EQ(traffic.longest_s(), 0.01);
+}
+
+TEST(Traffic, CountsAWriterWhoseClockIsBehind) {
+  Traffic traffic;
+  for (std::int64_t i = 0; i <= 300; ++i) {
+    ReceivedMessage one = message(1, static_cast<std::uint64_t>(i) + 1, 5000 + 10 * i);
+    one.source_nsec = 10 * i * kMsec;
+    traffic.add(one);
+    if (i == 100) traffic.begin_again(6000 * kMsec);
+  }
+  EXPECT_NEAR(traffic.messages_per_s(8000 * kMsec), 100.0, 1.5);
+}
+
+TEST(Traffic, HasNoNegativeInterval) {
+  Traffic traffic;
+  for (const std::int64_t msec : {10, 30, 20, 40}) {
+    ReceivedMessage one = message(1, 1, msec);
+    one.source_nsec = 20 * kMsec;
+    traffic.add(one);
+  }
+  EXPECT_DOUBLE_EQ(traffic.shortest_s(), 0.02);
 }
 
 TEST(Traffic, AddsUpTheRatesOfItsWriters) {
