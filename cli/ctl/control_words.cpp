@@ -41,16 +41,38 @@ std::string path_argument(const std::string& path) {
                                                        : path);
 }
 
+/// Without the blanks at both ends.
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
+}
+
+/// Words of which each has its own `=`: `get` prints blanks around it, at which a shell splits.
+std::vector<std::string> joined_at_equals(const std::vector<std::string>& words) {
+  std::vector<std::string> joined;
+  for (const std::string& word : words) {
+    const bool goes_on = !joined.empty() &&
+                         (trimmed(word).starts_with('=') || trimmed(joined.back()).ends_with('='));
+    if (goes_on) {
+      joined.back() += word;
+    } else {
+      joined.push_back(word);
+    }
+  }
+  return joined;
+}
+
 /// NAME.PARAMETER=VALUE words as a mapping.
 std::string values_argument(const std::vector<std::string>& words) {
   std::string yaml;
-  for (const std::string& word : words) {
+  for (const std::string& word : joined_at_equals(words)) {
     const std::size_t equals = word.find('=');
-    const bool named = equals != std::string::npos && equals > 0 && equals + 1 < word.size();
-    if (!named || word.substr(0, equals).find('.') == std::string::npos)
+    const std::string name = trimmed(word.substr(0, equals));
+    const std::string value = equals == std::string::npos ? "" : trimmed(word.substr(equals + 1));
+    if (value.empty() || name.find('.') == std::string::npos)
       throw UsageError("'" + word + "' is not of the form NAME.PARAMETER=VALUE");
-    yaml += (yaml.empty() ? "{" : ", ") + quoted(word.substr(0, equals)) + ": " +
-            word.substr(equals + 1);
+    yaml += (yaml.empty() ? "{" : ", ") + quoted(name) + ": " + value;
   }
   return yaml + "}";
 }

@@ -52,8 +52,9 @@ void add_get_verb(CommandLine& line) {
   add_session_options(verb, words->target);
   verb.option("--timeout", "TIME", words->timeout, "How long to wait for the reply (5s)");
   verb.examples(
-      "One line for each value, as `cordis ctl SESSION set` takes it. Without a name all that the\n"
-      "scene has.\n"
+      "One line for each value, as `cordis ctl SESSION set` takes it, with or without the blanks:\n"
+      "`cordis ctl SESSION set $(cordis get SESSION NAME)`. Without a name all that the scene "
+      "has.\n"
       "Exit code: 0 done, 1 no answer, 2 no such parameter or bad command line.\n\n"
       "Examples:\n"
       "  cordis get plucked_string\n"

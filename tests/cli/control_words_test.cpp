@@ -2,7 +2,9 @@
 #include "cli/ctl/control_words.h"
 
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +53,19 @@ TEST(ControlWords, MakeAMappingOfNewValues) {
   for (const char* word : {"hold_m=3", "rosin.hold_m", "rosin.hold_m=", "=3"})
     EXPECT_EQ(refusal_of("set", {word}),
               "'" + std::string(word) + "' is not of the form NAME.PARAMETER=VALUE");
+}
+
+TEST(ControlWords, TakeWhatGetPrintsAsNewValues) {
+  const std::string wanted = "{'a.b': 1, 'c.d': -2}";
+  for (const auto& words :
+       std::vector<std::vector<std::string>>{{"a.b = 1", "c.d =-2"},
+                                             {"a.b", "=", "1", "c.d", "=", "-2"},
+                                             {"a.b=", "1", "c.d", "=-2"}})
+    EXPECT_EQ(read_control_words("set", words).argument, wanted) << words.front();
+  EXPECT_EQ(refusal_of("set", {"a.b", "=", "1", "2"}),
+            "'2' is not of the form NAME.PARAMETER=VALUE");
+  EXPECT_EQ(refusal_of("set", {"a.b", "="}), "'a.b=' is not of the form NAME.PARAMETER=VALUE");
+  EXPECT_EQ(refusal_of("set", {"a.b = "}), "'a.b = ' is not of the form NAME.PARAMETER=VALUE");
 }
 
 TEST(ControlWords, TakeATimeFromTheBeginningOfATakeOn) {
