@@ -23,6 +23,7 @@ namespace {
 using namespace cordis;
 
 constexpr auto kPollPeriod = std::chrono::milliseconds(500);
+constexpr double kLongSilenceS = 5.0;  // a session begins sooner
 
 void fill(msg::NodeStatus& status, const record::Recorder& recorder, const std::string& file) {
   const record::RecorderFigures done = recorder.figures();
@@ -35,10 +36,16 @@ void fill(msg::NodeStatus& status, const record::Recorder& recorder, const std::
   status.dropped(done.dropped + done.lost);
 }
 
-/// Says so once when messages begin to be dropped, and when the file takes no more.
+/// Says so once when no topic fits, when messages begin to be dropped, and when the file takes no more.
 class Watch {
  public:
-  void update(const record::RecorderFigures& done) {
+  void update(const record::Recorder& recorder) {
+    const record::RecorderFigures done = recorder.figures();
+    if (done.seconds > kLongSilenceS && !unmatched_) {
+      const std::string unmatched = recorder.unmatched();
+      unmatched_ = !unmatched.empty();
+      if (unmatched_) spdlog::warn("{}", unmatched);
+    }
     if (done.dropped > 0 && !done.is_over && !dropped_) {
       dropped_ = true;
       spdlog::warn("the disk is too slow: messages are lost, frames before gestures");
@@ -50,6 +57,7 @@ class Watch {
   }
 
  private:
+  bool unmatched_ = false;
   bool dropped_ = false;
   bool over_ = false;
 };
@@ -68,7 +76,9 @@ class Ending {
     if (is_closed_) return is_good_;
     is_closed_ = true;
     const record::RecorderFigures done = recorder_.close();
-    is_good_ = !done.is_over;
+    const std::string unmatched = recorder_.unmatched();
+    const bool has_nothing = done.messages == 0 && !unmatched.empty();
+    is_good_ = !done.is_over && !has_nothing;
     const std::filesystem::path file = done.has_failed ? mcap::part_of(out_) : out_;
     spdlog::info("{}: {} messages of {} that came, {:.1f} MB in {:.1f} s", file.string(),
                  done.messages - done.dropped, done.messages,
@@ -77,6 +87,7 @@ class Ending {
       spdlog::warn("{} messages lost: {} before a slow or full disk, {} on the way",
                    done.dropped + done.lost, done.dropped, done.lost);
     if (!done.problem.empty()) spdlog::error("{}", done.problem);
+    if (has_nothing) spdlog::error("nothing was recorded: {}", unmatched);
     if (done.has_failed) spdlog::error("`cordis recover {}` saves what is in it", file.string());
     return is_good_;
   }
@@ -149,7 +160,7 @@ int run(const node::NodeStart& start, config::Problems& problems) {
                                    });
     commands.start();
     Watch watch;
-    while (!node::wait_for_stop(kPollPeriod)) watch.update(recorder.figures());
+    while (!node::wait_for_stop(kPollPeriod)) watch.update(recorder);
     ending.close();  // the last status has the last figures
   }
   return ending.close() ? 0 : 1;

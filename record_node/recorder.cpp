@@ -8,6 +8,10 @@
 #include <set>
 #include <span>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "idl/topics.h"
 #include "node/topic_follower.h"
@@ -45,6 +49,10 @@ struct Recorder::Impl {
             participant, [this](const dds::RawTopic& topic) { return is_wanted(topic.name); },
             [this](const dds::RawTopic& topic, const dds::RawSample& sample) {
               take(topic, sample);
+            },
+            [this](const std::vector<dds::FoundWriter>& found) {
+              const std::lock_guard lock(known_mutex);
+              for (const dds::FoundWriter& writer : found) topics_found.insert(writer.topic.name);
             }) {}
 
   ~Impl() { close(); }
@@ -58,6 +66,7 @@ struct Recorder::Impl {
   TakeWriter file;
   std::mutex known_mutex;
   std::map<dds::WriterId, RecordedWriter*> known;
+  std::set<std::string> topics_found;
   node::TopicFollower follower;
 
   bool is_wanted(const std::string& topic) const {
@@ -136,6 +145,21 @@ Recorder::~Recorder() = default;
 
 RecorderFigures Recorder::figures() const {
   return impl_->figures();
+}
+
+std::string Recorder::unmatched() const {
+  const std::lock_guard lock(impl_->known_mutex);
+  const std::set<std::string>& topics = impl_->topics_found;
+  std::vector<std::string> patterns;
+  for (const std::string& pattern : impl_->config.topics) {
+    if (std::ranges::none_of(topics, [&pattern](const std::string& topic) {
+          return mcap::matches_topic(topic, {pattern});
+        }))
+      patterns.push_back(pattern);
+  }
+  if (patterns.empty()) return {};
+  return fmt::format("no topic fits '{}'; there {}", fmt::join(patterns, "', '"),
+                     topics.empty() ? "is none" : fmt::format("are {}", fmt::join(topics, ", ")));
 }
 
 std::string Recorder::mismatch() const {

@@ -66,6 +66,10 @@ class Recorder {
   /// What of the session it cannot receive, and why: dds::Participant::mismatch().
   std::string mismatch() const;
 
+  /// A sentence that names the patterns of `topics` that no topic has fitted so far, and the topics that
+  /// there were; empty when each pattern has one.
+  std::string unmatched() const;
+
   /// Writes what waits and ends the file. @return the last figures
   RecorderFigures close();
 

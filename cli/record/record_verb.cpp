@@ -31,6 +31,7 @@ namespace cordis::cli {
 namespace {
 
 constexpr auto kRecordProgress = std::chrono::milliseconds(250);
+constexpr double kLongSilenceS = 2.0;  // processes find each other sooner
 
 struct RecordWords {
   SessionWords target;
@@ -103,6 +104,7 @@ int record(const RecordWords& words) {
   ProgressLine line;
   record::RecorderFigures before;
   std::string mismatch;
+  std::string unmatched;
   while (!node::wait_for_stop(kRecordProgress)) {
     const record::RecorderFigures now = recorder.figures();
     const double spent = now.seconds - before.seconds;
@@ -113,6 +115,10 @@ int record(const RecordWords& words) {
     if (const std::string found = recorder.mismatch(); found != mismatch) {
       mismatch = found;
       if (!found.empty()) spdlog::warn("{}", found);
+    }
+    if (unmatched.empty() && now.seconds > kLongSilenceS) {
+      unmatched = recorder.unmatched();
+      if (!unmatched.empty()) spdlog::warn("{}", unmatched);
     }
     const bool long_enough = longest && seconds_of(*longest) <= now.seconds;
     if (now.is_over || long_enough) break;
@@ -135,6 +141,12 @@ int record(const RecordWords& words) {
                  static_cast<unsigned long long>(done.before));
   if (done.has_failed) {
     std::fprintf(stderr, "cordis record: `cordis recover %s` saves what is in it\n", file.c_str());
+    return kFailure;
+  }
+  if (unmatched.empty() && !recorder.unmatched().empty())
+    std::fprintf(stderr, "cordis record: %s\n", recorder.unmatched().c_str());
+  if (done.messages == 0) {
+    std::fputs("cordis record: nothing was recorded\n", stderr);
     return kFailure;
   }
   return done.is_over || done.dropped + done.lost > 0 ? kLoss : kSuccess;
@@ -161,7 +173,7 @@ void add_record_verb(CommandLine& line) {
       "of this host publish in that DDS domain, of whatever types.\n"
       "No process waits for the recorder. Before a slow disk it drops frames first, and counts "
       "them.\n"
-      "Exit code: 0 done, 1 failed, 2 bad command line, 3 done with loss.\n\n"
+      "Exit code: 0 done, 1 failed or nothing recorded, 2 bad command line, 3 done with loss.\n\n"
       "Examples:\n"
       "  cordis record plucked_string\n"
       "  cordis record plucked_string -o take.mcap --topics 'gesture/*,scene/*' --max-duration "

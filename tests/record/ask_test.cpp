@@ -166,6 +166,15 @@ TEST_F(Ask, RecordsTheTopicsThatAreWantedAndNotExcluded) {
   EXPECT_TRUE(test::eventually([&] { return topics_with({"--topics", "lab/*"}) == count; }));
 }
 
+TEST_F(Ask, SaysThatNoTopicFitsAndThatNothingWasRecorded) {
+  const std::string out = (folder_ / "none.mcap").string();
+  const std::string record = "cordis record " + name_ + " --max-duration 3s -o ";
+  ends(record + out + " --topics nosuch", 1, "no topic fits 'nosuch'; there are ");
+  ends(record + out + " --topics nosuch", 1, "lab/count");
+  ends(record + out + " --topics nosuch", 1, "nothing was recorded");
+  ends(record + out + " --topics 'nosuch,lab/*'", 0, "no topic fits 'nosuch'; there are ");
+}
+
 TEST_F(Ask, EndsWithoutAWordWhenItsReaderHasGone) {
   for (const std::string& question :
        {"echo " + name_ + " lab/count --idl " + idl_, "hz " + name_, "info " + name_}) {
