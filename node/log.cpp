@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <semaphore>
+#include <sstream>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -157,6 +158,14 @@ void install_log(const std::string& name) {
   logger->set_pattern(launched ? "%^%l%$ %v" : "%H:%M:%S.%e %n %^%l%$ %v");
   set_level(*logger);
   spdlog::set_default_logger(std::move(logger));
+}
+
+void log_lines(spdlog::level::level_enum level, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::ranges::replace(line, '\t', ' ');  // a caret stays below its character
+    spdlog::log(level, "{}", line);
+  }
 }
 
 }  // namespace cordis::node

@@ -16,4 +16,7 @@ namespace cordis::node {
 /// spdlog::info(...) and the like.
 void install_log(const std::string& name);
 
+/// Logs each line of a text as a line of its own.
+void log_lines(spdlog::level::level_enum level, const std::string& text);
+
 }  // namespace cordis::node

@@ -7,6 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "node/config/number.h"
+#include "node/log.h"
 #include "sim_node/checks/settling.h"
 #include "sim_node/checks/stability_check.h"
 #include "sim_node/run/describe.h"
@@ -36,7 +37,8 @@ SessionControl::SessionControl(const node::NodeStart& start, bool is_forced,
           loop.mailbox(), loop.simulation().shared_scene(), start.epoch,
           [launch = start.launch, is_forced](const std::string& path, config::Problems& problems) {
             scene::Scene scene = load_next_scene(launch, path, is_forced, problems);
-            if (problems.has_errors()) spdlog::warn("'load' was refused\n{}", problems.text());
+            if (problems.has_errors())
+              node::log_lines(spdlog::level::warn, "'load' was refused\n" + problems.text());
             return scene;
           },
           [this, is_forced](const scene::Scene& scene, config::Problems& problems) {

@@ -82,6 +82,18 @@ TEST(Log, NeverWaitsForItsReaderAndSaysHowManyLinesAreMissing) {
   EXPECT_TRUE(seen.ends_with(" end\n"));
 }
 
+TEST(Log, HasALineForEachLineOfAText) {
+  const PipeAsError error;
+  log_lines(spdlog::level::warn, "refused\na.yaml:1:2: error: {} is wrong\n\tx\n\t^");
+  spdlog::default_logger()->flush();
+
+  const std::string seen = error.look();
+  EXPECT_EQ(std::count(seen.begin(), seen.end(), '\n'), 4) << seen;
+  EXPECT_NE(seen.find("warning a.yaml:1:2: error: {} is wrong\n"), std::string::npos) << seen;
+  EXPECT_NE(seen.find("warning  ^\n"), std::string::npos) << seen;
+  EXPECT_EQ(seen.find('?'), std::string::npos) << seen;
+}
+
 TEST(Log, SaysThatALevelIsUnknownAndStaysAtInfo) {
   const PipeAsError error("debgu");
   spdlog::debug("a detail");
