@@ -7,9 +7,11 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "cli/duration.h"
 #include "cli/echo/message_printer.h"
 #include "cli/echo/take_echo.h"
 #include "cli/exit_code.h"
@@ -29,6 +31,7 @@ struct EchoWords {
   std::string topic;
   std::string format = "yaml";
   std::string count;
+  std::string timeout;
   std::vector<std::string> idl_files;
   bool full = false;
 };
@@ -45,6 +48,8 @@ std::optional<std::uint64_t> count_of(const std::string& text) {
 /// Prints what comes, until a signal or enough. @return exit code
 int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
                  MessagePrinter& printer) {
+  std::optional<std::chrono::nanoseconds> timeout;
+  if (!words.timeout.empty()) timeout = parse_duration(words.timeout);
   const SessionAddress address = words.target.address();
   const record::MessageTypes types = known_message_types(words.idl_files);
   node::install_stop_signals();
@@ -52,6 +57,7 @@ int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
   SilenceNote silence("echo", address.session, words.topic, listener.participant());
   std::uint64_t printed = 0;
   std::uint64_t received = 0;
+  auto last = std::chrono::steady_clock::now();
   while (!node::stop_requested() && (!count || printed < *count)) {
     for (const ReceivedMessage& message : listener.take(kEchoWait)) {
       ++received;
@@ -63,11 +69,19 @@ int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
                          .time_nsec = message.source_nsec,
                          .sequence = message.sequence,
                          .bytes = message.bytes});
-      if (is_printed) ++printed;
+      if (is_printed) {
+        ++printed;
+        last = std::chrono::steady_clock::now();
+      }
       if (count && printed == *count) break;
     }
     if (!flush_output()) break;
     silence.update(received);
+    const bool is_enough = count && printed == *count;
+    if (timeout && !is_enough && std::chrono::steady_clock::now() >= last + *timeout)
+      throw std::runtime_error(received > 0
+                                   ? "no message was printed for " + words.timeout
+                                   : silence.text() + " (--timeout " + words.timeout + ")");
   }
   if (listener.left_out() > 0)
     std::fprintf(stderr,
@@ -82,8 +96,8 @@ int echo(const EchoWords& words) {
     throw UsageError("a table in CSV has one topic: name it behind the session or take");
   const std::optional<std::uint64_t> count = count_of(words.count);
   if (!names_take(words.target.session)) return echo_session(words, count, printer);
-  if (!words.target.domain.empty() || !words.target.name.empty())
-    throw UsageError("--domain and --session are for running sessions");
+  if (!words.target.domain.empty() || !words.target.name.empty() || !words.timeout.empty())
+    throw UsageError("--domain, --session and --timeout are for running sessions");
   node::install_stop_signals();
   return echo_take({words.target.session, words.topic, count, words.idl_files}, printer);
 }
@@ -99,6 +113,8 @@ void add_echo_verb(CommandLine& line) {
   verb.optional_word("TOPIC", words->topic, "A topic, or a pattern: 'gesture/*'");
   verb.option("--format", "FORMAT", words->format, "yaml, ndjson or csv (yaml)");
   verb.option("-n,--count", "N", words->count, "End after so many messages");
+  verb.option("--timeout", "TIME", words->timeout,
+              "Fail when no message of a session comes for so long: 5s");
   verb.flag("--full", words->full, "In YAML, whole lists and not their first 16 elements");
   verb.list("--idl", "FILE,...", words->idl_files, "IDL files of types that Cordis does not have");
   add_session_options(verb, words->target);
@@ -107,7 +123,8 @@ void add_echo_verb(CommandLine& line) {
       "take\n"
       "describes. time_s counts from 1970, by the clock of the writer.\n"
       "--domain N without a session prints what all programs of the domain say.\n"
-      "Exit code: 0 done, 1 no such session or failed, 2 no take or bad command line, 3 messages\n"
+      "Exit code: 0 done, 1 no such session, no message in time or failed, 2 no take or bad "
+      "command line, 3 messages\n"
       "left out.\n\n"
       "Examples:\n"
       "  cordis echo plucked_string scene/signals\n"

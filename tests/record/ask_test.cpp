@@ -110,6 +110,13 @@ TEST_F(Ask, SaysWhichWordIsWrong) {
   ends("cordis echo " + name_ + " -n 0", 2, "-n must be a whole number");
   ends("cordis info " + name_ + " --json", 2, "--json is for takes");
 
+  ends("cordis echo " + name_ + " nothing -n 1 --timeout 300ms", 1,
+       "no message has come on 'nothing'; `cordis info " + name_ +
+           "` lists the topics (--timeout 300ms)");
+  ends("cordis echo " + name_ + " lab/count -n 3 --timeout 100s --idl " + idl_, 0, "count");
+  ends("cordis echo " + name_ + " lab/count -n 3 --timeout 300ms", 1,
+       "no message was printed for 300ms");
+  ends("cordis echo " + take_ + " --timeout 1s", 2, "--timeout are for running sessions");
   ChildProcess echo({kAsked, "echo", name_, "nothing"});
   EXPECT_TRUE(echo.wait_for_output("no message has come on 'nothing'", kPatience));
   echo.signal(SIGINT);
