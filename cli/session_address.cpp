@@ -8,7 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "node/config/launch.h"
+#include "node/config/regular_file.h"
 #include "node/last_take.h"
 #include "node/runtime_folder.h"
 #include "node/security/keyring.h"
@@ -26,6 +28,8 @@ bool is_file(const std::string& word) {
 /// they do for `cordis run`.
 config::Launch launch_of(const std::string& named, const std::string& domain,
                          const std::string& name) {
+  if (names_take(named))
+    throw UsageError("'" + named + "' is a take: name a session, or its launch file");
   const std::string text = "cordis: 1\nsession: " + named + "\nnodes: {sim: {node: sim_node}}\n";
   std::vector<std::string> overrides;
   if (!domain.empty()) overrides.push_back("domain=" + domain);
@@ -100,6 +104,10 @@ SessionAddress address_of(const std::string& named, const std::string& domain,
   SessionAddress address = address_without_option(named, domain, name, is_any);
   if (!keyring.empty()) address.keyring = keyring;
   return address;
+}
+
+bool names_take(const std::string& word) {
+  return word.ends_with(".mcap") || word.ends_with(".mcap.part") || config::is_take_file(word);
 }
 
 std::string with_reason(const std::string& text, const std::string& reason) {

@@ -32,6 +32,9 @@ SessionAddress address_of(const std::string& named, const std::string& domain,
                           const std::string& name, bool is_any = false,
                           const std::string& keyring = "");
 
+/// True if the word names a take and no session: an existing one, or by its ending.
+bool names_take(const std::string& word);
+
 /// A sentence, and behind a colon the reason, where one is known.
 std::string with_reason(const std::string& text, const std::string& reason);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/command_line.h"
+#include "cli/duration.h"
 #include "node/config/count_text.h"
 #include "record_node/mcap/file_error.h"
 
@@ -29,6 +30,16 @@ std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::stri
   } catch (const mcap::FileError& error) {
     throw UsageError(error.what());
   }
+}
+
+std::uint64_t start_offset_in(const mcap::Reader& take, const std::string& offset) {
+  const mcap::Statistics& all = take.statistics();
+  const auto offset_nsec = static_cast<std::uint64_t>(parse_offset(offset).count());
+  if (offset_nsec > all.end_nsec - all.start_nsec)
+    throw UsageError(
+        fmt::format("--start-offset {} is beyond the end of the take, which lasts {:.3f} s", offset,
+                    1e-9 * static_cast<double>(all.end_nsec - all.start_nsec)));
+  return offset_nsec;
 }
 
 std::unique_ptr<mcap::Writer> make_take(const std::string& file, const std::string& compression) {

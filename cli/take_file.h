@@ -14,6 +14,11 @@ namespace cordis::cli {
 /// Opens a take; of a torn one it says on stderr how much is left. @throws UsageError when there is none
 std::unique_ptr<mcap::Reader> open_take(const std::string& verb, const std::string& file);
 
+/// @param offset  the word of --start-offset
+/// @return it behind the first message [ns]
+/// @throws UsageError when it is beyond the last one
+std::uint64_t start_offset_in(const mcap::Reader& take, const std::string& offset);
+
 /// A new take for what a verb makes. @param compression  none, lz4 or zstd
 /// @throws UsageError when it exists, or cannot be made
 std::unique_ptr<mcap::Writer> make_take(const std::string& file, const std::string& compression);

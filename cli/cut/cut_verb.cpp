@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/take_file.h"
@@ -55,13 +53,7 @@ mcap::MessageFilter filter_of(const CutWords& words, const mcap::Reader& take) {
   check_topics(take, words.topics);
   const mcap::Statistics& statistics = take.statistics();
   filter.start_nsec = statistics.start_nsec;
-  if (!words.start.empty()) {
-    filter.start_nsec += static_cast<std::uint64_t>(parse_offset(words.start).count());
-    if (filter.start_nsec > statistics.end_nsec)
-      throw UsageError(fmt::format(
-          "--start-offset {} is beyond the end of the take, which lasts {:.3f} s", words.start,
-          1e-9 * static_cast<double>(statistics.end_nsec - statistics.start_nsec)));
-  }
+  if (!words.start.empty()) filter.start_nsec += start_offset_in(take, words.start);
   if (!words.duration.empty()) {
     filter.end_nsec =
         filter.start_nsec + static_cast<std::uint64_t>(parse_duration(words.duration).count());

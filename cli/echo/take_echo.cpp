@@ -95,10 +95,6 @@ void check_topic(const mcap::Reader& take, const std::string& topic) {
 
 }  // namespace
 
-bool names_take(const std::string& word) {
-  return word.ends_with(".mcap") || word.ends_with(".mcap.part") || config::is_take_file(word);
-}
-
 int echo_take(const TakeEcho& wanted, MessagePrinter& printer) {
   const std::unique_ptr<mcap::Reader> take = open_take("echo", wanted.take);
   check_topic(*take, wanted.topic);

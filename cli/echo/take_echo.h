@@ -18,9 +18,6 @@ struct TakeEcho {
   std::vector<std::string> idl_files;  ///< describe types for which the take has no schema
 };
 
-/// True if the word names a take and no session: an existing one, or by its ending.
-bool names_take(const std::string& word);
-
 /// Prints by log time, each message by the schema that the take has of it.
 /// @return exit code: 0 all printed, 1 none could be, 3 some are missing or could not be printed
 /// @throws UsageError for no take, or a topic that it does not have

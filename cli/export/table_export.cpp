@@ -1,6 +1,7 @@
 // cli/export/table_export.cpp
 #include "cli/export/table_export.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -32,7 +33,8 @@ RowChoice choice_of(const std::string& every) {
   if (every == "tick") return {};
   if (every == "frame") return {.rows = Rows::kFrames};
   if (every == "step") return {.rows = Rows::kSteps};
-  if (every.empty() || std::isdigit(static_cast<unsigned char>(every.front())) == 0)
+  const bool has_unit = !every.empty() && std::isalpha(static_cast<unsigned char>(every.back()));
+  if (!has_unit || std::isdigit(static_cast<unsigned char>(every.front())) == 0)
     throw UsageError("--every '" + every + "' is none of tick, frame, step or a time (0.01s)");
   return {.span_s = seconds_of(parse_duration(every))};
 }
@@ -83,6 +85,10 @@ class TableExport {
         break;
     }
     for (const auto& file : files_) file->finish();
+    if (last_step_ > 0 && last_step_ < window_.first())
+      throw UsageError(fmt::format(
+          "--start-offset is beyond the end of the scene, which is at {:.6g} s in the take",
+          static_cast<double>(last_step_) / scene_.description.step_rate_hz()));
     result.row_count = row_count_;
     report(result);
   }
@@ -119,6 +125,7 @@ class TableExport {
 
   void take(std::uint64_t step) {
     const double time_s = static_cast<double>(step) / scene_.description.step_rate_hz();
+    last_step_ = std::max(last_step_, step);
     if (!window_.has(step) || !is_due(time_s)) return;
     if (row_count_ == 0) first_step_ = step;
     double* value = row_.data();
@@ -197,6 +204,7 @@ class TableExport {
   std::string note_;
   bool has_signal_row_ = false;
   std::uint64_t first_step_ = 0;
+  std::uint64_t last_step_ = 0;  // in the window or not
   DeviceRows::Missing missing_;
   std::uint64_t row_count_ = 0;
 };

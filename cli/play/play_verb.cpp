@@ -19,6 +19,7 @@
 #include "cli/exit_code.h"
 #include "cli/play/play_keys.h"
 #include "cli/progress_line.h"
+#include "cli/take_file.h"
 #include "node/config/launch.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
@@ -64,8 +65,7 @@ double rate_in(const std::string& text) {
 }
 
 /// The session that the take says it is of.
-std::string session_of(const std::filesystem::path& file) {
-  const mcap::Reader take(file);
+std::string session_of(const mcap::Reader& take) {
   for (const mcap::Metadata& words : take.metadata()) {
     const auto session = words.values.find("session");
     if (words.name == "cordis.session" && session != words.values.end() && !session->second.empty())
@@ -175,10 +175,12 @@ int play(const PlayWords& words) {
   config.topics = words.topics;
   config.excluded = words.excluded;
   config.remapped = remapped_in(words.remapped);
-  if (!words.start_offset.empty()) config.start_s = seconds_of(parse_offset(words.start_offset));
   if (!words.duration.empty()) config.duration_s = seconds_of(parse_offset(words.duration));
   try {
-    config.session = words.session.empty() ? session_of(config.take) : words.session;
+    const mcap::Reader take(config.take);
+    config.session = words.session.empty() ? session_of(take) : words.session;
+    if (!words.start_offset.empty())
+      config.start_s = 1e-9 * static_cast<double>(start_offset_in(take, words.start_offset));
   } catch (const mcap::FileError& error) {
     node::print_text(stderr, std::string("cordis play: ") + error.what() + "\n");
     return kBadInput;

@@ -71,7 +71,7 @@ void SignalRows::write_line() {
 }
 
 void SignalRows::lose_table(const std::string& reason) {
-  failure_ = reason;
+  failure_ = "signals: " + reason;
   table_path_.clear();
   table_file_.reset();
 }
@@ -143,7 +143,7 @@ void SignalRows::finish(const std::vector<NodeEnd>& nodes) {
   try {
     if (summary_file_) write_summary(nodes);
   } catch (const std::runtime_error& error) {
-    failure_ += (failure_.empty() ? "" : "; ") + std::string(error.what());
+    failure_ += (failure_.empty() ? "summary: " : "; summary: ") + std::string(error.what());
   }
   if (!failure_.empty()) throw std::runtime_error(failure_);
 }
@@ -209,7 +209,7 @@ std::string SignalLog::finish(const std::vector<NodeEnd>& nodes) {
   ending_.store(true);
   signals_.interrupt();
   thread_.join();
-  return failure_.empty() ? rows_.text() : "signals: " + failure_ + "; " + rows_.text();
+  return failure_.empty() ? rows_.text() : failure_ + "; " + rows_.text();
 }
 
 }  // namespace cordis::cli

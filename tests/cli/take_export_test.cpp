@@ -414,6 +414,37 @@ TEST_F(TakeExport, NamesTheTakeThatNoRecorderHasClosed) {
   }
 }
 
+TEST_F(TakeExport, RefusesAStartBehindTheEndOfTheScene) {
+  for (const auto& [offset, code] : {std::pair{"6ms", kLoss}, std::pair{"7ms", kBadInput}}) {
+    CommandLine line("cordis", "", "0");
+    add_verbs(line);
+    std::string out;
+    std::string error;
+    const std::vector<std::string> words{"export",         path("take.mcap"), "--csv",
+                                         path("late.csv"), "--start-offset",  offset};
+    EXPECT_EQ(run_captured(line, words, out, error), code) << error;
+    EXPECT_EQ(error.find("--start-offset is beyond the end of the scene, which is at 0.007 s") !=
+                  std::string::npos,
+              code == kBadInput)
+        << error;
+  }
+}
+
+TEST_F(TakeExport, SaysWhatEveryMayBe) {
+  const mcap::Reader take(path("take.mcap"));
+  for (const char* every : {"3", "often", ""}) {
+    ExportOptions options;
+    options.csv_file = path("take.csv");
+    options.every = every;
+    try {
+      export_take(take, options);
+      FAIL() << every;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("is none of tick, frame, step or a time"));
+    }
+  }
+}
+
 TEST_F(TakeExport, TakesAPartOfTheTime) {
   const mcap::Reader take(path("take.mcap"));
   ExportOptions options;

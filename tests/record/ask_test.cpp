@@ -117,6 +117,10 @@ TEST_F(Ask, SaysWhichWordIsWrong) {
   ends("cordis echo " + name_ + " lab/count -n 3 --timeout 300ms", 1,
        "no message was printed for 300ms");
   ends("cordis echo " + take_ + " --timeout 1s", 2, "--timeout are for running sessions");
+  for (const std::string verb : {"hz ", "get ", "record ", "ctl "})
+    ends("cordis " + verb + take_ + (verb == "ctl " ? " pause" : ""), 2,
+         "'" + take_ + "' is a take: name a session, or its launch file");
+
   ChildProcess echo({kAsked, "echo", name_, "nothing"});
   EXPECT_TRUE(echo.wait_for_output("no message has come on 'nothing'", kPatience));
   echo.signal(SIGINT);

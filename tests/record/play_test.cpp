@@ -189,7 +189,7 @@ TEST_F(Play, RefusesWordsThatFitNoTakeInOneSentence) {
        {Wrong{{"-m", "lab/cuont:=b"}, 1, "plays no topic 'lab/cuont'"},
         Wrong{{"-m", "lab/count"}, 2, "TOPIC:=OTHER"},
         Wrong{{"--topics", "scene/*"}, 1, "no topic fits"},
-        Wrong{{"--start-offset", "10s"}, 1, "ends after 0.780 s"},
+        Wrong{{"--start-offset", "10s"}, 2, "beyond the end of the take, which lasts 0.780 s"},
         Wrong{{"--start-offset", "-1s"}, 2, "0 or longer"}, Wrong{{"--rate", "0"}, 2, "above 0"}}) {
     ChildProcess player(words(wrong.words));
     EXPECT_EQ(player.wait(kPatience), wrong.code) << player.output();
