@@ -122,6 +122,7 @@ TEST(Reach, BetweenGroupsHasTheEnergyOfTwoBodiesAndAllThatLinksStore) {
     scene.mats.push_back(mass(2.0, Vec3(0.3 * i, 4, 0)));
     scene.mats[i].velocity = Vec3(3, 0, 0);
   }
+  scene.state_machines = {state_machine(0.0)};
   engine::SetLiaison set;
   set.set_p = {0, 1, 2};
   set.set_q = {3, 4};

@@ -189,25 +189,24 @@ double brought_by(const engine::NetworkDescription& network, const engine::State
 }
 
 double brought_by_pair(const engine::NetworkDescription& network, const engine::SetLiaison& set,
-                       double nearest, double rest_length, const Reach& reach) {
+                       const NearestPairs& start, const Reach& reach) {
   const engine::StateMachine& state_machine = network.state_machines[set.state_machine];
   const engine::LinkState& state = state_machine.states[state_machine.start];
   if (const auto* balls = std::get_if<engine::LennardJones>(&state.elasticity)) {
     return balls->well_depth;
   }
   const bool has_force = state.stiffness > 0.0 || !is_none(state.elasticity);
-  const bool pulls_in =
-      state.pulls && has_force && set.range > rest_length;  // what comes into range
-  if (never_falls(state.elasticity) && !pulls_in) return 0.0;
+  const bool pulls_in = state.pulls && has_force && set.range > start.rest_length;
+  if (never_falls(state.elasticity) && (start.all_begin_within || !pulls_in)) return 0.0;
   double lowest = network.dimension > 1 ? 0.0 : -set.range;
   if (engine::acts_on_surfaces(network, set)) lowest = -kEndless;
-  return fall_of(state, rest_length, {std::min(nearest, set.range), set.range, lowest, set.range},
-                 reach);
+  return fall_of(state, start.rest_length,
+                 {std::min(start.nearest, set.range), set.range, lowest, set.range}, reach);
 }
 
 double brought_by_pairs(const engine::NetworkDescription& network, const engine::SetLiaison& set,
-                        double nearest, double rest_length, const Reach& reach) {
-  const double fall = brought_by_pair(network, set, nearest, rest_length, reach);
+                        const NearestPairs& start, const Reach& reach) {
+  const double fall = brought_by_pair(network, set, start, reach);
   if (!std::isfinite(fall)) return 0.0;
   return fall * static_cast<double>(std::max(set.set_p.size(), set.set_q.size()));
 }

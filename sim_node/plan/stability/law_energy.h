@@ -28,14 +28,20 @@ double fall_of(const engine::LinkState& state, double rest_length, const Span& s
 /// What a link with states brings in from its start [J], in the state of the start.
 double brought_by(const engine::NetworkDescription& network, const engine::StateLink& link);
 
+/// What a set begins with.
+struct NearestPairs {
+  double nearest = 0.0;  ///< distance of a pair at the start [m]; the range where none is nearer
+  double rest_length = 0.0;       ///< the least [m]
+  bool all_begin_within = false;  ///< every pair is within range: none comes in from beyond it
+};
+
 /// What one pair of a set brings in [J], from its start or from the range on, in the state of the start.
-/// @param nearest  distance at the start [m]; the range where none is nearer
 double brought_by_pair(const engine::NetworkDescription& network, const engine::SetLiaison& set,
-                       double nearest, double rest_length, const Reach& reach);
+                       const NearestPairs& start, const Reach& reach);
 
 /// What all pairs of a set bring in likewise, each of its members in one pair [J]; 0 where that has no end.
 double brought_by_pairs(const engine::NetworkDescription& network, const engine::SetLiaison& set,
-                        double nearest, double rest_length, const Reach& reach);
+                        const NearestPairs& start, const Reach& reach);
 
 /// True if a state drives its ends apart with a force that grows with the distance.
 bool drives_apart(const engine::LinkState& state, double rest_length, bool turns,

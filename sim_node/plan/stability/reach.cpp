@@ -80,7 +80,8 @@ BroughtBySet brought_by_set(const engine::NetworkDescription& network,
     brought.stored += max_stored_in(state_machine, point, of_masses);
     nearest = std::min(nearest, pair.distance);
   }
-  brought.fall = brought_by_pairs(network, set, nearest, smallest_rest_of(network, set), of_masses);
+  const NearestPairs start{nearest, smallest_rest_of(network, set), all_begin_within(set, near)};
+  brought.fall = brought_by_pairs(network, set, start, of_masses);
   return brought;
 }
 

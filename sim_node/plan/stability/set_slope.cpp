@@ -70,6 +70,13 @@ double smallest_radius(const NetworkDescription& network, const std::vector<std:
   return smallest;
 }
 
+bool all_begin_within(const engine::SetLiaison& set, const StartPairs& near) {
+  const std::size_t count_p = set.set_p.size();
+  const std::size_t count =
+      set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
+  return near.are_kept() && near.pairs().size() == count;
+}
+
 double smallest_rest_of(const NetworkDescription& network, const engine::SetLiaison& set) {
   if (set.rest_length >= 0.0) return set.rest_length;
   const auto& others = set.set_q.empty() ? set.set_p : set.set_q;
@@ -121,12 +128,12 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   if (near.at_one_point()) start.uncertainty = starts_at_one_point(state_machine, {});
   const auto& law = state_machine.states[state_machine.start].elasticity;
   start.are_balls = std::holds_alternative<engine::LennardJones>(law);
-  start.fall =
-      start.are_balls ? 0.0 : brought_by_pair(network, set, nearest, start.rest_length, here);
+  start.all_begin_within = all_begin_within(set, near);
+  const NearestPairs pairs{nearest, start.rest_length, start.all_begin_within};
+  start.fall = start.are_balls ? 0.0 : brought_by_pair(network, set, pairs, here);
   if (reach.counts_sets) {
     const double all = reach.brought + here.struck;
-    const double own_falls =
-        reach.factor * brought_by_pairs(network, set, nearest, start.rest_length, here);
+    const double own_falls = reach.factor * brought_by_pairs(network, set, pairs, here);
     here.energy += most + std::max(reach.in_pairs - start.stored, 0.0) +
                    std::max(reach.falls - own_falls, 0.0);
     if (on_surfaces && std::isfinite(start.fall)) here.energy += start.fall;
@@ -137,10 +144,6 @@ SetStart set_start_of(const NetworkDescription& network, const engine::SetLiaiso
   }
   here.range = set.range;
   start.is_known = near.are_kept();
-  const std::size_t count_p = set.set_p.size();
-  const std::size_t pair_count =
-      set.set_q.empty() ? count_p * (count_p - 1) / 2 : count_p * set.set_q.size();
-  start.all_begin_within = near.are_kept() && near.pairs().size() == pair_count;
   return start;
 }
 

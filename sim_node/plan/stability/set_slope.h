@@ -7,6 +7,7 @@
 #include "sim_node/engine/description/network.h"
 #include "sim_node/plan/stability/reach.h"
 #include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/start_pairs.h"
 
 namespace cordis::plan {
 
@@ -38,6 +39,9 @@ double stiffness_across_at(const engine::StateMachine& state_machine, int dimens
 
 /// The largest distance from the surfaces of a set at which a normal flips [m]; -infinity: none does.
 double flips_at(const engine::NetworkDescription& network, const engine::SetLiaison& set);
+
+/// True if every pair of a set is within range.
+bool all_begin_within(const engine::SetLiaison& set, const StartPairs& near);
 
 /// The smallest rest length of a pair of a set [m].
 double smallest_rest_of(const engine::NetworkDescription& network, const engine::SetLiaison& set);
