@@ -65,7 +65,7 @@ PairRows PairBlock::rows() noexcept {
   return {row_at(0), column_a_.data(),
           count_,    first_,
           last_,     start_.data(),
-          {},        {array(kGiven), array(kGiven + 1), array(kGiven + 2), array(kGiven + 3)}};
+          {},        {array(kForces), array(kForces + 1), array(kForces + 2), array(kForces + 3)}};
 }
 
 PairRow PairBlock::row_at(std::size_t pair) noexcept {

@@ -65,8 +65,8 @@ class PairBlock {
     kRestLength,
     kFactor,
     kViscousFactor,
-    kGiven,
-    kArrayCount = kGiven + 4
+    kForces,
+    kArrayCount = kForces + 4
   };
 
   double* array(std::size_t which) noexcept { return values_.data() + which * capacity_; }

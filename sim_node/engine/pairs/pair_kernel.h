@@ -76,7 +76,7 @@ struct PairRows {
   std::size_t last = 0;                // one past the last
   const std::size_t* start = nullptr;  // of row a: start[a - first]; one past the last too
   PartnerShare share;                  // how much each pair counts for
-  double* given[4] = {};               // room: what each pair gives to a, and less its share
+  double* forces[4] = {};              // room: the force of each pair on a, and less its share
 };
 
 /// Members and their neighbours: row a has those from neighbour[start[a] - origin] on to

@@ -374,14 +374,14 @@ void sum_rows(const PairRows& rows, double* force) noexcept {
         const std::size_t first = i + part * Lanes::kWidth;
         if (first >= end) break;
         const std::size_t count = end - first;
-        const auto given = [&](std::size_t which) noexcept {
-          const auto row = Lanes::load_any(rows.given[which] + first);
+        const auto some = [&](std::size_t which) noexcept {
+          const auto row = Lanes::load_any(rows.forces[which] + first);
           return count < Lanes::kWidth ? first_of<Lanes>(count, row) : row;
         };
-        sum.x[part] = sum.x[part] + given(0);
-        sum.y[part] = sum.y[part] + given(1);
-        sum.z[part] = sum.z[part] + given(2);
-        sum.partners[part] = sum.partners[part] + given(3);
+        sum.x[part] = sum.x[part] + some(0);
+        sum.y[part] = sum.y[part] + some(1);
+        sum.z[part] = sum.z[part] + some(2);
+        sum.partners[part] = sum.partners[part] + some(3);
       }
     }
     give<Lanes>(sum, force + 4 * a);
@@ -393,15 +393,15 @@ void sum_rows(const PairRows& rows, double* force) noexcept {
 template <class Lanes, class ForceOf>
 void spread_all(const PairRows& rows, const double* factor, double* force,
                 ForceOf force_of) noexcept {
-  double* const* const given = rows.given;
+  double* const* const forces = rows.forces;
   for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
     const typename Lanes::Row3 tension = force_of(i);
     const auto partner =
         less_share<Lanes>(rows.share, Lanes::load(rows.pairs.length + i), Lanes::load(factor + i));
-    Lanes::store(given[0] + i, tension.x);
-    Lanes::store(given[1] + i, tension.y);
-    Lanes::store(given[2] + i, tension.z);
-    Lanes::store(given[3] + i, partner);
+    Lanes::store(forces[0] + i, tension.x);
+    Lanes::store(forces[1] + i, tension.y);
+    Lanes::store(forces[2] + i, tension.z);
+    Lanes::store(forces[3] + i, partner);
     Lanes::subtract(force, rows.pairs.column + i, tension, partner);
   }
   sum_rows<Lanes>(rows, force);
