@@ -90,7 +90,7 @@ const std::vector<std::pair<std::string, std::vector<std::string>>> kAllowed = {
     {"viz_node/render/", {"viz_node/render/", "idl/"}},
     {"viz_node/", {"viz_node/", "node/", "idl/"}},
     {"record_node/mcap/", {"record_node/mcap/"}},
-    {"cli/table/", {"cli/table/", "cli/command_line.h"}},
+    {"cli/table/", {"cli/table/", "cli/command_line.h", "node/config/regular_file.h"}},
     {"record_node/idl/", {"record_node/idl/"}},
     {"record_node/", {"record_node/", "node/", "idl/"}},
     {"cli/bench/",  // measures the engine
