@@ -41,7 +41,7 @@ std::string path_argument(const std::string& path) {
                                                        : path);
 }
 
-/// Without the blanks at both ends.
+/// The text, less the blanks at its begin and its end.
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string::npos) return {};

@@ -28,8 +28,8 @@ bool is_take_file(const std::string& path);
 /// What is never replaced by an output: "YAML file" or "take"; empty for any other path.
 std::string kept_kind_of(const std::string& path);
 
-/// Why a file cannot be written: it is there and no regular file, or one that is kept, or a folder;
-/// empty when nothing speaks against it. Does not create it.
+/// Why a file cannot be written: the path exists and is no regular file, or kept_kind_of() names it.
+/// Empty when it can be. Does not create it.
 std::string reason_not_to_write(const std::string& path);
 
 }  // namespace cordis::config
