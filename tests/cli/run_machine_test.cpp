@@ -9,7 +9,7 @@ namespace {
 void stop_for_a_while(const ChildProcess& process) {
   const TimerControl timer;
   process.signal(SIGSTOP);
-  EXPECT_TRUE(eventually([&] { return timer.wake_count() >= 50; }));
+  EXPECT_TRUE(eventually([&] { return timer.turn_count() >= 50; }));
   process.signal(SIGCONT);
 }
 

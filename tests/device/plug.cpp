@@ -1,6 +1,7 @@
 // tests/device/plug.cpp
 #include "tests/device/plug.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
@@ -14,7 +15,14 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "node/time.h"
+
 namespace cordis::test {
+
+std::chrono::nanoseconds Plug::longest_turn() const noexcept {
+  const std::int64_t present = lives_ ? node::monotonic_nsec() - turn_begin_nsec_ : 0;
+  return std::chrono::nanoseconds(std::max(longest_turn_nsec_.load(), present));
+}
 
 void Plug::into_serial_line(const std::filesystem::path& link) {
   wire_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -61,15 +69,14 @@ void Plug::pull() {
 
 void Plug::step() {
   lives_ = true;
+  turn_begin_nsec_ = node::monotonic_nsec();
   thread_ = std::thread([this] {
     const sched_param priority{sched_get_priority_min(SCHED_FIFO)};
     if (is_prompt) pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
-    constexpr auto kStall = std::chrono::milliseconds(50);
-    auto before = std::chrono::steady_clock::now();
     while (lives_) {
-      const auto now = std::chrono::steady_clock::now();
-      stalled_ = stalled_ || now - before > kStall;
-      before = now;
+      const std::int64_t now = node::monotonic_nsec();
+      const std::int64_t begin = turn_begin_nsec_.exchange(now);
+      longest_turn_nsec_ = std::max(longest_turn_nsec_.load(), now - begin);
       pollfd poll_on{wire_, POLLIN, 0};
       poll(&poll_on, 1, 1);
       std::uint8_t bytes[256];

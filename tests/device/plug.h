@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -40,8 +41,9 @@ class Plug {
   /// next. All bits and bytes get their turn.
   static Harm every_kind(int n);
 
-  /// True if its thread has ever been held up for 50 ms.
-  bool has_stalled() const noexcept { return stalled_; }
+  /// The longest that its thread has been held up so far; a turn that has not ended counts.
+  std::chrono::nanoseconds longest_turn() const noexcept;
+  bool has_stalled() const noexcept { return longest_turn() > std::chrono::milliseconds(50); }
 
   void say_nothing();  ///< an empty datagram
   void say(std::span<const std::uint8_t> bytes);
@@ -53,7 +55,8 @@ class Plug {
   std::function<void()> idle_;
   std::thread thread_;
   std::atomic<bool> lives_{false};
-  std::atomic<bool> stalled_{false};
+  std::atomic<std::int64_t> turn_begin_nsec_{0};  // CLOCK_MONOTONIC
+  std::atomic<std::int64_t> longest_turn_nsec_{0};
   int wire_ = -1;
   std::filesystem::path link_;  // of a serial line
   int keeper_ = -1;

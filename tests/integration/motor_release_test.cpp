@@ -28,6 +28,7 @@
 #include "tests/integration/scenes.h"
 #include "tests/integration/status_watch.h"
 #include "tests/support/filled.h"
+#include "tests/support/line_control.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::test {
@@ -43,6 +44,7 @@ class Board {
   Board& operator=(const Board&) = delete;
   virtual std::string plug_in(const std::filesystem::path& folder) = 0;
   virtual ForceLog& log() = 0;
+  virtual const Plug& plug() const = 0;
 };
 
 const char* const kLimits =
@@ -70,6 +72,7 @@ firefader: {full_scale_n: 5, <patient>port: <port>}
                   {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
   ForceLog& log() override { return faders_.log; }
+  const Plug& plug() const override { return faders_.plug; }
 
  private:
   Faders faders_;
@@ -90,6 +93,7 @@ haply: {rest_m: [0, 0.1], <patient>port: <port>}
                   {{"patient", kPatient}, {"port", (folder / "tty").string()}});
   }
   ForceLog& log() override { return board_.log; }
+  const Plug& plug() const override { return board_.plug; }
 
  private:
   PantographBoard board_;
@@ -113,6 +117,7 @@ kfb1: {<patient><where>}
                                          {{"patient", kPatient}, {"where", where}});
   }
   ForceLog& log() override { return board_.log; }
+  const Plug& plug() const override { return board_.plug; }
   void send_event(int code) { board_.event = code; }  // again and again; 0: no more
 
  private:
@@ -187,11 +192,11 @@ pid_t loop_thread_of(pid_t process) {
   return found;
 }
 
-/// How late this machine wakes timers on any core. A thread that may run on each core is woken on
-/// the one that happens to be free.
-class CoreTimers {
+/// How late this machine wakes timers on any core, and carries bytes to a board. A thread that may
+/// run on each core is woken on the one that happens to be free.
+class MachineControl {
  public:
-  CoreTimers() {
+  MachineControl() {
     cpu_set_t usable{};
     sched_getaffinity(0, sizeof usable, &usable);
     for (int core = 0; core < CPU_SETSIZE; ++core) {
@@ -205,12 +210,13 @@ class CoreTimers {
   }
 
   double worst_ms() const {
-    std::chrono::nanoseconds worst{0};
+    std::chrono::nanoseconds worst = line_.worst();
     for (const auto& timer : timers_) worst = std::max(worst, timer->worst());
     return std::chrono::duration<double, std::milli>(worst).count();
   }
 
  private:
+  LineControl line_;
   std::vector<std::unique_ptr<TimerControl>> timers_;
 };
 
@@ -255,8 +261,9 @@ class PressedKey {
 
   /// Kills processes at once, while there is a force; a negative id is a group.
   void kill_all(const std::vector<pid_t>& pids, int signal = SIGKILL) {
-    timers_.emplace();
+    machine_.emplace();
     EXPECT_TRUE(eventually([&] { return board_->log().newest() > 0.0; }));
+    killed_frames_ = board_->log().frames();
     killed_nsec_ = node::monotonic_nsec();
     for (const pid_t pid : pids) EXPECT_EQ(kill(pid, signal), 0) << pid;
     all_killed_nsec_ = node::monotonic_nsec();  // this thread may have been held up in between
@@ -266,8 +273,9 @@ class PressedKey {
   /// goes to the thread that caused it. That is the one with the highest priority.
   void crash_loop(int signal) {
     const pid_t thread = loop_thread_of(device_);
-    timers_.emplace();
+    machine_.emplace();
     EXPECT_TRUE(eventually([&] { return board_->log().newest() > 0.0; }));
+    killed_frames_ = board_->log().frames();
     killed_nsec_ = node::monotonic_nsec();
     EXPECT_EQ(tgkill(device_, thread, signal), 0);
     all_killed_nsec_ = node::monotonic_nsec();
@@ -284,12 +292,15 @@ class PressedKey {
     if (zero_nsec == 0) return;  // the loop had stalled, and let go, in the moment of the kill
     const double taken_ms =
         static_cast<double>(std::max<std::int64_t>(zero_nsec - all_killed_nsec_, 0)) * 1e-6;
-    const double late_ms = timers_->worst_ms();
-    timers_.reset();
+    const double late_ms = machine_->worst_ms();
+    machine_.reset();
     std::printf("%-14s %-26s no force at the board after %6.2f ms, timers up to %.3g ms late\n",
                 name_.c_str(), what.c_str(), taken_ms, late_ms);
     EXPECT_LE(taken_ms, kWatchdogMs + kPeriodsMs + kEmulatorMs + kTimers * late_ms)
-        << name_ << ", " << what << ": the force outlives the watchdog";
+        << name_ << ", " << what << ": the force outlives the watchdog; the board was held up for "
+        << std::chrono::duration<double, std::milli>(board_->plug().longest_turn()).count()
+        << " ms at most, and had " << board_->log().frames() - killed_frames_
+        << " frames since the kill; timers and lines were up to " << late_ms << " ms late";
   }
 
   /// Waits for the end of every process, after that of the launcher.
@@ -317,9 +328,10 @@ class PressedKey {
   pid_t view_ = -1;
   pid_t recorder_ = -1;
   pid_t guardian_ = -1;
-  std::optional<CoreTimers> timers_;  // from a kill until the force is checked
+  std::optional<MachineControl> machine_;  // from a kill until the force is checked
   std::int64_t killed_nsec_ = 0;
   std::int64_t all_killed_nsec_ = 0;
+  std::uint64_t killed_frames_ = 0;  // of the board, until the kill
 };
 
 TEST(MotorRelease, KillOfTheNodeOrTheSceneOrBothLeavesNoForce) {

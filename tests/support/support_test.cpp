@@ -11,6 +11,7 @@
 #include "tests/support/child_process.h"
 #include "tests/support/eventually.h"
 #include "tests/support/filled.h"
+#include "tests/support/line_control.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::test {
@@ -105,16 +106,18 @@ TEST(HangWatch, EndsATestThatHangsWithTheOutputOfItsProcesses) {
       << said;
 }
 
-/// How late a timer was in a process that stalled for `pause`.
+/// How late a control was in a process that stalled for `pause`.
+template <class Control>
 std::chrono::nanoseconds worst_after_a_pause_of(std::chrono::milliseconds pause) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const TimerControl control;
-    while (control.wake_count() == 0) usleep(100);
+    const Control control;
+    while (control.turn_count() == 0) usleep(100);
     raise(SIGSTOP);
-    while (control.worst() == 0ns) usleep(100);
+    const std::uint64_t before = control.turn_count();
+    while (control.turn_count() < before + 2) usleep(100);
     const std::chrono::nanoseconds worst = control.worst();
     _exit(write(ends[1], &worst, sizeof worst) == sizeof worst ? 0 : 1);
   }
@@ -133,17 +136,24 @@ std::chrono::nanoseconds worst_after_a_pause_of(std::chrono::milliseconds pause)
 }
 
 TEST(TimerControl, CountsAPauseOfTheProcessAsADelay) {
-  EXPECT_GE(worst_after_a_pause_of(30ms), 28ms) << "30 ms, less the period in which it began";
+  EXPECT_GE(worst_after_a_pause_of<TimerControl>(30ms), 28ms)
+      << "30 ms, less the period in which it began";
 }
 
 TEST(TimerControl, WakesAgainAndAgainAndSaysWhyATestIsSkipped) {
   const TimerControl control;
-  ASSERT_TRUE(eventually([&] { return control.wake_count() >= 5; }));
+  ASSERT_TRUE(eventually([&] { return control.turn_count() >= 5; }));
   EXPECT_GT(control.worst(), 0ns);
   EXPECT_EQ(control.reason_to_skip(std::chrono::hours(1)), "");
   const std::string reason = control.reason_to_skip(0ns);
   EXPECT_EQ(reason.find("this machine wakes timers "), 0u) << reason;
   EXPECT_TRUE(reason.ends_with(" ms late")) << reason;
+}
+
+TEST(LineControl, CarriesByteAfterByteAndMeasuresTheWay) {
+  const LineControl control;
+  ASSERT_TRUE(eventually([&] { return control.turn_count() >= 5; }));
+  EXPECT_GT(control.worst(), 0ns);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ class TimerControl {
   TimerControl& operator=(const TimerControl&) = delete;
 
   /// Wake-ups so far.
-  std::uint64_t wake_count() const noexcept { return wakes_.load(); }
+  std::uint64_t turn_count() const noexcept { return wakes_.load(); }
   /// The largest delay of a wake-up so far; a wake-up that is still due counts.
   std::chrono::nanoseconds worst() const noexcept;
   /// The reason to skip a test that no machine with such timers can pass, or nothing.
