@@ -2,9 +2,12 @@
 #include "cli/run/node_output.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -43,8 +46,8 @@ NodeOutput::NodeOutput(const std::vector<std::string>& names, const std::string&
     const auto path = std::filesystem::path(log_directory) / (name + ".log");
     const std::string reason = config::reason_not_to_write(path.string());
     if (!reason.empty()) throw std::runtime_error("cannot write " + path.string() + ": " + reason);
-    logs_.emplace_back(path);
-    if (!logs_.back()) throw std::runtime_error("cannot write " + path.string());
+    logs_.push_back({path, std::ofstream(path)});
+    if (!logs_.back().file) throw std::runtime_error("cannot write " + path.string());
   }
 }
 
@@ -58,7 +61,18 @@ std::string NodeOutput::prefix(std::size_t index, Stream stream) const {
 void NodeOutput::line(std::size_t node, Stream stream, std::string_view text) {
   const std::string shown = node::terminal_text(text);
   console_.line(stream, prefix(node, stream) + shown);
-  if (!logs_.empty()) logs_[node] << time_of_day() << ' ' << shown << std::endl;
+  if (!logs_.empty()) log(node, shown);
+}
+
+void NodeOutput::log(std::size_t node, const std::string& text) {
+  Log& log = logs_[node];
+  if (!log.file) return;
+  errno = 0;
+  log.file << time_of_day() << ' ' << text << std::endl;
+  if (log.file || std::exchange(has_lost_lines_, true)) return;
+  const std::string reason = errno == 0 ? std::string() : std::string(": ") + std::strerror(errno);
+  say("warning: cannot write " + log.path.string() + reason +
+      "; lines from here on are lost to the files of --log-dir");
 }
 
 void NodeOutput::say(std::string_view text) {

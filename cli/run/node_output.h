@@ -1,6 +1,8 @@
 // cli/run/node_output.h -- the lines of all nodes on one screen, and in a file each.
 #pragma once
 
+#include <array>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -10,7 +12,8 @@
 
 namespace cordis::cli {
 
-/// Shows every line behind the name of its node, stdout on stdout and stderr on stderr.
+/// Shows every line behind the name of its node, stdout on stdout and stderr on stderr. A file that takes no
+/// more is left as it is, and one sentence says so.
 class NodeOutput {
  public:
   /// @param log_directory  when not empty, made if need be; then every node has its lines in
@@ -31,11 +34,18 @@ class NodeOutput {
   void flush() { console_.flush(); }
 
  private:
+  struct Log {
+    std::filesystem::path path;
+    std::ofstream file;
+  };
+
   std::string prefix(std::size_t index, Stream stream) const;
+  void log(std::size_t node, const std::string& text);
 
   std::vector<std::string> names_;  // padded to one width; the last is the launcher's own
   std::array<bool, 2> colours_;
-  std::vector<std::ofstream> logs_;  // empty, or one per node
+  std::vector<Log> logs_;        // empty, or one per node
+  bool has_lost_lines_ = false;  // and has said so
   Console console_;
 };
 

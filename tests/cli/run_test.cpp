@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "tests/cli/fake_session.h"
+#include "tests/support/small_disk.h"
 
 namespace cordis::test {
 namespace {
@@ -326,6 +327,28 @@ TEST(Run, WritesTheLinesOfEveryNodeIntoItsFile) {
   EXPECT_TRUE(contains(text_of(logs / "sim.log"), " one\n"));
   EXPECT_TRUE(contains(text_of(logs / "sim.log"), " two\n"));
   EXPECT_TRUE(contains(text_of(logs / "view.log"), " stopped\n"));
+}
+
+TEST(Run, SaysOnceThatALogTakesNoMore) {
+  FakeSession session;
+  session.announce();
+  std::string commands;
+  for (int i = 0; i < 300; ++i) commands += "say " + std::string(100, 'x') + ";";
+  session.node("sim", commands + "say the last;pid");
+  const auto logs = session.directory() / "logs";
+  std::unique_ptr<ChildProcess> run;
+  {
+    const SmallDisk disk(10000);  // the launcher has files of its own
+    run = session.start({"--log-dir", logs});
+  }
+  ASSERT_TRUE(wait_for_all(*run));
+
+  run->signal(SIGTERM);
+
+  EXPECT_EQ(end_of(*run), 0) << run->output();
+  const std::string warning = "warning: cannot write " + logs.string();
+  EXPECT_EQ(count_of(run->output(), warning), 1u) << run->output();
+  EXPECT_TRUE(contains(run->output(), "sim    | the last\n"));
 }
 
 TEST(Run, FailsInOneLineWhenALogCannotBeWritten) {
