@@ -7,6 +7,7 @@
 #include "cli/command_line.h"
 #include "cli/export/event_export.h"
 #include "cli/export/message_source.h"
+#include "cli/export/scene_end.h"
 #include "cli/export/sound_export.h"
 #include "cli/export/table_export.h"
 #include "cli/export/take_scene.h"
@@ -36,14 +37,17 @@ ExportResult export_take(const mcap::Reader& take, const ExportOptions& options)
   refuse_shared_files(options, {"the take", take.path().string()});
   if (!options.has_table() && options.wav_file.empty() && options.events_file.empty())
     throw UsageError("say which file: --csv, --npz, --wav or --events");
+  if (!options.has_table() && !options.mats.empty())
+    throw UsageError("--mat adds to the table of --csv or --npz");
   const TakeScene scene = scene_of_take(take, options.scene);
+  if (!options.wav_file.empty() && !has_sound(scene)) throw UsageError(kNoSound);
+  refuse_start_beyond_end(take, scene, options.start_s);
+  refuse_impossible_files(options);
   ExportResult result;
   result.scene_name = scene.description.name();
   result.scene_count = scene.count;
   ReadLoss loss;
   if (options.has_table()) export_table(take, scene, options, loss, result);
-  if (!options.has_table() && !options.mats.empty())
-    throw UsageError("--mat adds to the table of --csv or --npz");
   if (!options.events_file.empty()) export_events(take, scene, options, loss, result);
   if (!options.wav_file.empty()) export_sound(take, scene, options, loss, result);
   if (!take.is_whole()) result.losses.push_back(take.damage());

@@ -31,9 +31,8 @@ struct ExportResult {
   std::vector<std::string> losses;    ///< what is not in the files, a sentence each
 };
 
-/// Makes all files first, then reads the take.
-/// @throws UsageError for what is wrong with words or files, before a row; std::runtime_error when a
-///         file takes no more.
+/// Writes the files. @throws UsageError for what is wrong with words or files, before a file is replaced;
+///         std::runtime_error when a file takes no more.
 ExportResult export_take(const mcap::Reader& take, const ExportOptions& options);
 
 }  // namespace cordis::cli

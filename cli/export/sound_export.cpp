@@ -1,12 +1,14 @@
 // cli/export/sound_export.cpp
 #include "cli/export/sound_export.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include "cli/command_line.h"
 #include "cli/export/time_window.h"
 #include "cli/table/sound_file.h"
 #include "idl/topics.h"
+#include "node/assert.h"
 
 namespace cordis::cli {
 namespace {
@@ -15,14 +17,18 @@ constexpr double kLongestGapS = 600.0;
 
 }  // namespace
 
+bool has_sound(const TakeScene& scene) noexcept {
+  return std::ranges::any_of(scene.description.signals(),
+                             [](const msg::SignalDescription& signal) { return signal.sound(); });
+}
+
 void export_sound(const mcap::Reader& take, const TakeScene& scene, const ExportOptions& options,
                   ReadLoss& loss, ExportResult& result) {
   std::vector<SoundChannel> channels;
   for (const msg::SignalDescription& signal : scene.description.signals()) {
     if (signal.sound()) channels.push_back({signal.name(), signal.full_scale()});
   }
-  if (channels.empty())
-    throw UsageError("--wav: the scene has no sound; add 'sound: true' to one of its signals");
+  CORDIS_ASSERT(!channels.empty());
   const std::size_t count = channels.size();
   const double rate_hz = scene.description.step_rate_hz();
   SoundFile file(options.wav_file, std::move(channels), rate_hz);

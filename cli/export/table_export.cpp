@@ -85,10 +85,6 @@ class TableExport {
         break;
     }
     for (const auto& file : files_) file->finish();
-    if (last_step_ > 0 && last_step_ < window_.first())
-      throw UsageError(fmt::format(
-          "--start-offset is beyond the end of the scene, which is at {:.6g} s in the take",
-          static_cast<double>(last_step_) / scene_.description.step_rate_hz()));
     result.row_count = row_count_;
     report(result);
   }
@@ -125,7 +121,6 @@ class TableExport {
 
   void take(std::uint64_t step) {
     const double time_s = static_cast<double>(step) / scene_.description.step_rate_hz();
-    last_step_ = std::max(last_step_, step);
     if (!window_.has(step) || !is_due(time_s)) return;
     if (row_count_ == 0) first_step_ = step;
     double* value = row_.data();
@@ -204,7 +199,6 @@ class TableExport {
   std::string note_;
   bool has_signal_row_ = false;
   std::uint64_t first_step_ = 0;
-  std::uint64_t last_step_ = 0;  // in the window or not
   DeviceRows::Missing missing_;
   std::uint64_t row_count_ = 0;
 };

@@ -64,7 +64,11 @@ std::vector<std::string> ffmpeg_words(const std::string& path, int width, int he
 }  // namespace
 
 FilmWriter::FilmWriter(std::string path, int width, int height, double frames_per_s)
-    : path_(std::move(path)), is_folder_(path_.ends_with("/")) {
+    : path_(std::move(path)),
+      width_(width),
+      height_(height),
+      frames_per_s_(frames_per_s),
+      is_folder_(path_.ends_with("/")) {
   if (is_folder_) {
     std::error_code fault;
     std::filesystem::create_directories(path_, fault);
@@ -81,8 +85,7 @@ FilmWriter::FilmWriter(std::string path, int width, int height, double frames_pe
   }
   const std::string reason = config::reason_not_to_write(path_);
   if (!reason.empty()) throw UsageError("cannot write " + path_ + ": " + reason);
-  { const OutputFile is_possible(path_); }
-  start_ffmpeg(width, height, frames_per_s);
+  const OutputFile is_possible(path_);
 }
 
 FilmWriter::~FilmWriter() {
@@ -90,11 +93,11 @@ FilmWriter::~FilmWriter() {
   if (ffmpeg_ > 0) waitpid(ffmpeg_, nullptr, 0);
 }
 
-void FilmWriter::start_ffmpeg(int width, int height, double frames_per_s) {
+void FilmWriter::start_ffmpeg() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("there is no pipe left");
   fcntl(ends[1], F_SETPIPE_SZ, kPipeSize);
-  std::vector<std::string> words = ffmpeg_words(path_, width, height, frames_per_s);
+  std::vector<std::string> words = ffmpeg_words(path_, width_, height_, frames_per_s_);
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -129,6 +132,7 @@ void FilmWriter::write(const viz::Image& image) {
     file.flush();
     return;
   }
+  if (pipe_ < 0) start_ffmpeg();
   const std::uint8_t* rest = image.bytes().data();
   std::size_t left = image.bytes().size();
   while (left > 0) {
@@ -141,7 +145,7 @@ void FilmWriter::write(const viz::Image& image) {
 }
 
 void FilmWriter::finish() {
-  if (is_folder_) return;
+  if (pipe_ < 0) return;
   close(std::exchange(pipe_, -1));
   int status = 0;
   while (waitpid(ffmpeg_, &status, 0) < 0 && errno == EINTR) {

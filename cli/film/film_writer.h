@@ -10,7 +10,8 @@
 
 namespace cordis::cli {
 
-/// Writes MP4 (H.264) or WebM (VP9) with the program ffmpeg, or PNG files with numbers.
+/// Writes MP4 (H.264) or WebM (VP9) with the program ffmpeg, or PNG files with numbers. A film that was
+/// there before stays until the first image.
 class FilmWriter {
  public:
   /// @param path  name.mp4, name.webm, or a folder with a `/` at its end, which is made
@@ -29,10 +30,13 @@ class FilmWriter {
   std::uint64_t count() const noexcept { return count_; }  ///< images written
 
  private:
-  void start_ffmpeg(int width, int height, double frames_per_s);
+  void start_ffmpeg();
   [[noreturn]] void fail();
 
   std::string path_;
+  int width_;
+  int height_;
+  double frames_per_s_;
   bool is_folder_;
   pid_t ffmpeg_ = -1;
   int pipe_ = -1;

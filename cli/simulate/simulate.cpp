@@ -49,6 +49,8 @@ class Recording {
         first_step_(session.world().step_count()),
         summaries_(table_.columns().size()) {
     const scene::Scene& scene = session.scene();
+    if (!options.wav_file.empty() && scene.signals.sounds().empty()) throw UsageError(kNoSound);
+    refuse_impossible_files(options, options.summary_file);
     tables_ = make_table_files(options, table_.columns());
     if (!options.events_file.empty()) events_.emplace(options.events_file, scene);
     if (!options.wav_file.empty()) open_sound(options.wav_file);
@@ -93,9 +95,6 @@ class Recording {
     for (const std::size_t sound : signals.sounds()) {
       const scene::Signal& signal = signals.signals()[signals.by_step()[sound]];
       channels.push_back({signal.name, signal.full_scale});
-    }
-    if (channels.empty()) {
-      throw UsageError("--wav: the scene has no sound; add 'sound: true' to one of its signals");
     }
     sound_ = std::make_unique<SoundFile>(path, std::move(channels), session_.scene().step_rate_hz);
     by_step_.resize(signals.by_step().size());

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "cli/command_line.h"
 #include "node/assert.h"
 #include "node/config/regular_file.h"
@@ -16,7 +19,13 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   const std::string kept = config::kept_kind_of(path_);
   if (!kept.empty())
     throw UsageError("'" + path_ + "' is a " + kept + ", and is never overwritten");
-  file_ = path_ == "-" ? stdout : std::fopen(path_.c_str(), "wb");
+  if (path_ == "-") {
+    file_ = stdout;
+    return;
+  }
+  constexpr mode_t kReadAndWrite = 0666;
+  const int descriptor = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kReadAndWrite);
+  if (descriptor >= 0) file_ = fdopen(descriptor, "wb");
   if (file_ == nullptr) throw UsageError("cannot write '" + path_ + "': " + std::strerror(errno));
 }
 
@@ -28,7 +37,15 @@ void OutputFile::fail() const {
   throw std::runtime_error("cannot write '" + path_ + "': " + std::strerror(errno));
 }
 
+void OutputFile::begin() {
+  if (is_begun_ || file_ == stdout) return;
+  is_begun_ = true;
+  const bool is_emptied = ftruncate(fileno(file_), 0) == 0;
+  if (!is_emptied && errno != EINVAL) fail();  // a pipe or a device keeps nothing
+}
+
 void OutputFile::write(std::string_view bytes) {
+  begin();
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail();
   size_ += bytes.size();
 }
@@ -41,6 +58,7 @@ void OutputFile::overwrite(std::uint64_t offset, std::string_view bytes) {
 }
 
 void OutputFile::flush() {
+  begin();
   if (std::fflush(file_) != 0) fail();
 }
 

@@ -11,8 +11,8 @@ namespace cordis::cli {
 /// The file of a path, or stdout for `-`.
 class OutputFile {
  public:
-  /// Makes the file, empty. @throws UsageError when that is not possible, or would replace a YAML
-  /// file or a take.
+  /// Makes the file where there is none. What an existing one holds stays until the first byte is
+  /// written. @throws UsageError when that is not possible, or would replace a YAML file or a take.
   explicit OutputFile(std::string path);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -31,10 +31,13 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail() const;
+  /// Empties a file that was there before.
+  void begin();
 
   std::string path_;
   std::FILE* file_ = nullptr;
   std::uint64_t size_ = 0;
+  bool is_begun_ = false;
 };
 
 }  // namespace cordis::cli

@@ -7,6 +7,7 @@
 
 #include "cli/table/csv_file.h"
 #include "cli/table/npz_file.h"
+#include "cli/table/output_file.h"
 #include "node/config/regular_file.h"
 
 namespace cordis::cli {
@@ -68,6 +69,17 @@ void refuse_shared_files(const TableOptions& options, const NamedFile& read,
   refuse_overwriting({files.begin(), files.end() - 1}, {read});  // StateFile guards a state
   for (const NamedFile& file : {files[1], files[2]}) {
     if (file.path == "-") throw UsageError(file.word + " wants a file, not stdout");
+  }
+}
+
+void refuse_impossible_files(const TableOptions& options, const std::string& summary_file) {
+  for (const std::string& path :
+       {options.csv_file, options.npz_file, options.wav_file, options.events_file, summary_file}) {
+    std::error_code unknown;
+    // A pipe would end for its reader, when this end is closed.
+    const bool is_pipe = std::filesystem::is_fifo(path, unknown);
+    if (path.empty() || path == "-" || is_pipe) continue;
+    const OutputFile is_possible(path);
   }
 }
 

@@ -48,6 +48,15 @@ void refuse_overwriting(const std::vector<NamedFile>& outputs, const std::vector
 void refuse_shared_files(const TableOptions& options, const NamedFile& read,
                          const std::string& summary_file = {}, const std::string& state_file = {});
 
+/// What is wrong where --wav finds no sound.
+inline constexpr const char* kNoSound =
+    "--wav: the scene has no sound; add 'sound: true' to one of its signals";
+
+/// Refuses a file that cannot be made before another one is replaced.
+/// @param summary_file  of --summary, for a verb that has it; else empty
+/// @throws UsageError
+void refuse_impossible_files(const TableOptions& options, const std::string& summary_file = {});
+
 /// Makes the files of the table.
 /// @throws UsageError for a file that cannot be made
 std::vector<std::unique_ptr<TableFile>> make_table_files(const TableOptions& options,

@@ -274,6 +274,12 @@ TEST_F(SceneViews, RefusesLikelyMistakesInOneSentence) {
   EXPECT_THAT(refusal({"plot", kLaunch, "-o", path("a.svg")}), HasSubstr("say how long"));
 }
 
+TEST_F(SceneViews, LeavesAFilmAsItIsWhereTheSceneEndsBeforeIt) {
+  std::ofstream(path("old.mp4")) << "a film";
+  refusal({"film", kTake, "--from", "100s", "--duration", "1s", "-o", path("old.mp4")});
+  EXPECT_EQ(std::filesystem::file_size(path("old.mp4")), 6u);
+}
+
 TEST_F(SceneViews, SaysWhatAFilmNeedsWithoutFfmpeg) {
   const std::string before = std::getenv("PATH");
   setenv("PATH", folder_.c_str(), 1);

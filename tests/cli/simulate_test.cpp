@@ -653,6 +653,13 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
     EXPECT_EQ(run(words), kBadInput) << sentence;
     EXPECT_THAT(error_, HasSubstr(sentence));
   }
+  std::ofstream(path("old.csv")) << "as it was";
+  for (const auto& [word, file] :
+       {std::pair{"--wav", path("a.wav")}, std::pair{"--summary", path("none/a.json")},
+        std::pair{"--mat", std::string("ston")}}) {
+    EXPECT_EQ(run({scene, "--duration", "1s", "--csv", path("old.csv"), word, file}), kBadInput);
+    EXPECT_EQ(text_of("old.csv"), "as it was") << word;
+  }
   EXPECT_EQ(text_of("fall.yaml"), kFalling);
   EXPECT_EQ(text_of("t.json"), "\x89MCAP0\r\n and more");
 }

@@ -52,7 +52,7 @@ class TakeExport : public testing::Test {
   }
 
   /// Begins a take with the description of its scene, which may have a port.
-  void begin(const std::string& name, bool has_port = false) {
+  void begin(const std::string& name, bool has_port = false, bool has_sound = true) {
     writer_ = std::make_unique<mcap::Writer>(path(name));
     batch_ = 0;
     msg::SceneDescription scene;
@@ -67,7 +67,7 @@ class TakeExport : public testing::Test {
     signal.name("bridge");
     signal.unit("N");
     signal.rate(msg::RATE_STEP);
-    signal.sound(true);
+    signal.sound(has_sound);
     signal.full_scale(2.0);
     scene.signals().push_back(signal);
     if (has_port) {
@@ -428,6 +428,50 @@ TEST_F(TakeExport, RefusesAStartBehindTheEndOfTheScene) {
               code == kBadInput)
         << error;
   }
+}
+
+TEST_F(TakeExport, LeavesFilesAsTheyAreWhereItRefuses) {
+  const std::string nowhere = path("nowhere/file");
+  using Said = std::vector<std::string>;
+  for (const Said& words : {
+           Said{"take.mcap", "--start-offset", "7ms"},
+           Said{"take.mcap", "--mat", "absent"},
+           Said{"take.mcap", "--every", "often"},
+           Said{"take.mcap", "--scene", "2"},
+           Said{"take.mcap", "--npz", nowhere},
+           Said{"take.mcap", "--events", nowhere},
+           Said{"take.mcap", "--wav", nowhere},
+       }) {
+    for (const char* output : {"--csv", "--wav", "--events"}) {
+      if (words[1] == output) continue;
+      std::ofstream(path("old")) << "as it was";
+      CommandLine line("cordis", "", "0");
+      add_verbs(line);
+      std::string out;
+      std::string error;
+      Said all{"export", path(words[0]), output, path("old")};
+      all.insert(all.end(), words.begin() + 1, words.end());
+      const bool has_table = output == std::string("--csv");
+      if (!has_table && words[1] == "--every") continue;  // says nothing of other files
+      EXPECT_EQ(run_captured(line, all, out, error), kBadInput) << words[1] << ' ' << output;
+      EXPECT_EQ(text_of("old"), "as it was") << words[1] << ' ' << output;
+    }
+  }
+}
+
+TEST_F(TakeExport, RefusesASoundThatTheSceneDoesNotHaveBeforeItWritesATable) {
+  begin("silent.mcap", /*has_port=*/true, /*has_sound=*/false);
+  put_values(1, {1.0});
+  ASSERT_EQ(writer_->close(), mcap::WriteStatus::kOk);
+  std::ofstream(path("old.csv")) << "as it was";
+  const mcap::Reader take(path("silent.mcap"));
+  ExportOptions options;
+  options.csv_file = path("old.csv");
+  options.wav_file = path("new.wav");
+
+  EXPECT_THROW(export_take(take, options), UsageError);
+
+  EXPECT_EQ(text_of("old.csv"), "as it was");
 }
 
 TEST_F(TakeExport, SaysWhatEveryMayBe) {
