@@ -33,7 +33,7 @@ void fill(msg::NodeStatus& status, const record::Recorder& recorder, const std::
                   ? fmt::format("{}, {:.1f} MB", file, static_cast<double>(done.file_bytes) / 1e6)
                   : done.problem);
   status.ticks(done.messages);
-  status.dropped(done.dropped + done.lost);
+  status.dropped(done.missed.losses());
 }
 
 /// Says so once when no topic fits, when messages begin to be dropped, and when the file takes no more.
@@ -46,7 +46,7 @@ class Watch {
       unmatched_ = !unmatched.empty();
       if (unmatched_) spdlog::warn("{}", unmatched);
     }
-    if (done.dropped > 0 && !done.is_over && !dropped_) {
+    if (done.missed.dropped > 0 && !done.is_over && !dropped_) {
       dropped_ = true;
       spdlog::warn("the disk is too slow: messages are lost, frames before gestures");
     }
@@ -81,11 +81,12 @@ class Ending {
     is_good_ = !done.is_over && !has_nothing;
     const std::filesystem::path file = done.has_failed ? mcap::part_of(out_) : out_;
     spdlog::info("{}: {} messages of {} that came, {:.1f} MB in {:.1f} s", file.string(),
-                 done.messages - done.dropped, done.messages,
+                 done.messages - done.missed.dropped, done.messages,
                  static_cast<double>(done.file_bytes) / 1e6, done.seconds);
-    if (done.dropped + done.lost > 0)
+    if (done.missed.losses() > 0)
       spdlog::warn("{} messages lost: {} before a slow or full disk, {} on the way",
-                   done.dropped + done.lost, done.dropped, done.lost);
+                   done.missed.losses(), done.missed.dropped,
+                   done.missed.losses() - done.missed.dropped);
     if (!done.problem.empty()) spdlog::error("{}", done.problem);
     if (has_nothing) spdlog::error("nothing was recorded: {}", unmatched);
     if (done.has_failed) spdlog::error("`cordis recover {}` saves what is in it", file.string());

@@ -118,9 +118,11 @@ struct Recorder::Impl {
     writers.for_each([&](const RecordedWriter& writer) {
       sum.messages += writer.messages;
       sum.bytes += writer.bytes;
-      sum.dropped += writer.dropped;
-      sum.lost += writer.lost;
-      sum.before += writer.before;
+      const std::uint64_t lost = writer.lost;
+      sum.missed.dropped += writer.dropped;
+      sum.missed.lost += lost;
+      if (is_replacing(writer.topic.name)) sum.missed.replaced += lost;
+      sum.missed.before += writer.before;
       topics.insert(writer.topic.name);
     });
     sum.topics = topics.size();

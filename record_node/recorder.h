@@ -12,6 +12,7 @@
 #include "node/dds/network.h"
 #include "node/dds/security.h"
 #include "record_node/mcap/compression.h"
+#include "record_node/missed_messages.h"
 #include "record_node/take_files.h"
 
 namespace cordis::record {
@@ -38,9 +39,7 @@ struct RecorderConfig {
 struct RecorderFigures {
   std::uint64_t messages = 0;  ///< received messages
   std::uint64_t bytes = 0;     ///< their size
-  std::uint64_t dropped = 0;   ///< received messages for which the disk was too slow or full
-  std::uint64_t lost = 0;      ///< numbers of writers that never came: lost on the way
-  std::uint64_t before = 0;    ///< written before the recorder had found their writers
+  MissedMessages missed;
   std::uint64_t waiting_bytes = 0;
   std::uint64_t file_bytes = 0;
   std::uint64_t topics = 0;

@@ -14,7 +14,6 @@
 
 #include "cli/take_file.h"
 #include "node/config/count_text.h"
-#include "node/dds/topics.h"
 
 namespace cordis::cli {
 namespace {
@@ -102,35 +101,24 @@ std::uint64_t number_in(const mcap::Metadata& words, const std::string& key) {
   return found == words.values.end() ? 0 : std::strtoull(found->second.c_str(), nullptr, 10);
 }
 
-std::string missed_text(const MissedMessages& missed) {
+std::string missed_text(const record::MissedMessages& missed) {
   std::string text;
-  if (missed.dropped > 0)
-    text += config::count_text(missed.dropped, "message") + " dropped before a slow or full disk\n";
-  if (missed.lost > missed.replaced)
-    text += config::count_text(missed.lost - missed.replaced, "message") + " lost on the way\n";
-  if (missed.replaced > 0)
-    text += config::count_text(missed.replaced, "message") +
-            " replaced by newer ones on the way, as frames and statuses may be\n";
-  if (missed.before > 0)
-    text += config::count_text(missed.before, "message") +
-            " written before the recorder had found their writers\n";
+  for (const std::string& sentence : record::sentences_of(missed)) text += sentence + "\n";
   return text;
 }
 
 }  // namespace
 
-MissedMessages missed_in(const mcap::Reader& take) {
-  MissedMessages missed;
+record::MissedMessages missed_in(const mcap::Reader& take) {
+  record::MissedMessages missed;
   for (const mcap::Metadata& words : take.metadata()) {
     // A take that was merged has a record per source, `NAME/cordis.recording`.
     if (!words.name.ends_with("cordis.recording")) continue;
     missed.dropped += number_in(words, "messages_dropped");
     missed.lost += number_in(words, "messages_lost");
     missed.before += number_in(words, "messages_before");
-    for (const dds::Topic topic :
-         {dds::Topic::kFrame, dds::Topic::kDescription, dds::Topic::kStatus})
-      missed.replaced +=
-          number_in(words, std::string("lost ") + dds::qos_of(topic, false, false).name);
+    for (const std::string& topic : record::replacing_topics())
+      missed.replaced += number_in(words, "lost " + topic);
   }
   return missed;
 }
@@ -196,7 +184,7 @@ std::string take_json(const mcap::Reader& take) {
                                    {"media_type", attachment.media_type},
                                    {"size_bytes", attachment.data.size()}});
   }
-  const MissedMessages missed = missed_in(take);
+  const record::MissedMessages missed = missed_in(take);
   json["missed"] = {{"dropped", missed.dropped},
                     {"lost", missed.lost},
                     {"replaced", missed.replaced},

@@ -82,7 +82,7 @@ std::filesystem::path take_of(const RecordWords& words, const SessionAddress& ad
 std::string progress(const record::RecorderFigures& now, double mb_per_s) {
   return fmt::format("{:.1f} s  {} messages  {:.1f} MB  {:.2f} MB/s  queue {:.1f} MB  dropped {}",
                      now.seconds, now.messages, static_cast<double>(now.file_bytes) / 1e6, mb_per_s,
-                     static_cast<double>(now.waiting_bytes) / 1e6, now.dropped);
+                     static_cast<double>(now.waiting_bytes) / 1e6, now.missed.dropped);
 }
 
 int record(const RecordWords& words) {
@@ -127,18 +127,12 @@ int record(const RecordWords& words) {
   const record::RecorderFigures done = recorder.close();
   const std::filesystem::path file = done.has_failed ? mcap::part_of(config.out) : config.out;
   std::printf("%s: %llu messages of %llu topics, %.1f MB in %.1f s\n", file.c_str(),
-              static_cast<unsigned long long>(done.messages - done.dropped),
+              static_cast<unsigned long long>(done.messages - done.missed.dropped),
               static_cast<unsigned long long>(done.topics),
               static_cast<double>(done.file_bytes) / 1e6, done.seconds);
   if (!done.problem.empty()) std::fprintf(stderr, "cordis record: %s\n", done.problem.c_str());
-  if (done.dropped + done.lost > 0)
-    std::fprintf(
-        stderr, "cordis record: %llu messages dropped before the disk, %llu lost on the way\n",
-        static_cast<unsigned long long>(done.dropped), static_cast<unsigned long long>(done.lost));
-  if (done.before > 0)
-    std::fprintf(stderr,
-                 "cordis record: %llu messages were written before it had found their writers\n",
-                 static_cast<unsigned long long>(done.before));
+  for (const std::string& sentence : record::sentences_of(done.missed))
+    std::fprintf(stderr, "cordis record: %s\n", sentence.c_str());
   if (done.has_failed) {
     std::fprintf(stderr, "cordis record: `cordis recover %s` saves what is in it\n", file.c_str());
     return kFailure;
@@ -149,7 +143,7 @@ int record(const RecordWords& words) {
     std::fputs("cordis record: nothing was recorded\n", stderr);
     return kFailure;
   }
-  return done.is_over || done.dropped + done.lost > 0 ? kLoss : kSuccess;
+  return done.is_over || done.missed.losses() > 0 ? kLoss : kSuccess;
 }
 
 }  // namespace

@@ -23,15 +23,16 @@ inline constexpr std::uint32_t kCounted = 40;            // messages
 inline constexpr std::uint64_t kCountNsec = 20'000'000;  // between two of them
 inline const std::string kCountIdl = "module lab { struct Count { unsigned long number; }; };\n";
 
-/// Writes the numbers from 0 on to the topic lab/count, reliable, of a session named `count`. Each
-/// chunk holds few messages.
-inline void write_count_take(const std::filesystem::path& path, bool is_exclusive = false) {
+/// Writes the numbers from 0 on to a topic, reliable, of a session named `count`. Each chunk holds few
+/// messages.
+inline void write_count_take(const std::filesystem::path& path, bool is_exclusive = false,
+                             const std::string& topic = "lab/count") {
   mcap::WriterConfig config;
   config.chunk_bytes = 200;
   mcap::Writer writer(path, config);
   const std::uint16_t schema = writer.add_schema({0, "lab::Count", "omgidl", kCountIdl});
   const std::uint16_t channel = writer.add_channel({.schema_id = schema,
-                                                    .topic = "lab/count",
+                                                    .topic = topic,
                                                     .message_encoding = "cdr",
                                                     .metadata = {{"qos", R"(reliability: true
 durability: false

@@ -29,6 +29,49 @@ bool holds_gap(const std::filesystem::path& part) {
   return false;
 }
 
+/// Plays a take again and again, and records it with a recorder that stops meanwhile.
+/// @param code  how the recorder ends. @param sentence  what it says then
+/// @return `cordis info --json` of its take
+nlohmann::json info_of_gap(const mcap::TakeFolder& folder, const std::string& topic,
+                           bool is_exclusive, int code, const std::string& sentence) {
+  const std::string domain = std::to_string(test::own_domain());
+  const std::string played = folder / "played.mcap";
+  const std::string take = folder / "take.mcap";
+  test::write_count_take(played, is_exclusive, topic);
+  ChildProcess player({kMissedCordis, "play", played, "--loop", "--rate", "200", "--session",
+                       "missed", "--domain", domain});
+  EXPECT_TRUE(player.wait_for_output("session 'missed'", kPatience));
+  test::CountListener listener("missed", topic);
+  const auto wait_for_more = [&](std::size_t count) {
+    const std::size_t end = listener.received().size() + count;
+    return test::eventually([&] { return listener.received().size() >= end; });
+  };
+  EXPECT_TRUE(wait_for_more(500)) << player.output();
+
+  ChildProcess recorder(
+      {kMissedCordis, "record", "missed", "--domain", domain, "--topics", topic, "-o", take});
+  EXPECT_TRUE(recorder.wait_for_output("records into", kPatience));
+  EXPECT_TRUE(test::eventually([&] {
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(take + ".part", absent);
+    return !absent && size > 3000;
+  }));
+  recorder.signal(SIGSTOP);
+  EXPECT_TRUE(wait_for_more(30000));  // more than DDS keeps and sockets hold
+  recorder.signal(SIGCONT);
+  // What sockets held comes first: a busy machine takes seconds to get past it.
+  EXPECT_TRUE(test::eventually([&] { return holds_gap(take + ".part"); })) << recorder.output();
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait(kPatience), code) << recorder.output();
+  EXPECT_NE(recorder.output().find(sentence), std::string::npos) << recorder.output();
+  player.signal(SIGINT);
+  EXPECT_EQ(player.wait(kPatience), 0) << player.output();
+
+  ChildProcess info({kMissedCordis, "info", take, "--json"});
+  EXPECT_EQ(info.wait(kPatience), code);
+  return nlohmann::json::parse(info.output());
+}
+
 class RecorderThatStops : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(, RecorderThatStops, ::testing::Bool(), [](const auto& exclusive) {
   return exclusive.param ? "ExclusiveTopic" : "SharedTopic";
@@ -36,42 +79,7 @@ INSTANTIATE_TEST_SUITE_P(, RecorderThatStops, ::testing::Bool(), [](const auto& 
 
 TEST_P(RecorderThatStops, CountsWhatItMissesInTheTake) {
   const mcap::TakeFolder folder;
-  const std::string domain = std::to_string(test::own_domain());
-  const std::string played = folder / "played.mcap";
-  const std::string take = folder / "take.mcap";
-  test::write_count_take(played, GetParam());
-  ChildProcess player({kMissedCordis, "play", played, "--loop", "--rate", "200", "--session",
-                       "missed", "--domain", domain});
-  ASSERT_TRUE(player.wait_for_output("session 'missed'", kPatience));
-  test::CountListener listener("missed");
-  const auto wait_for_more = [&](std::size_t count) {
-    const std::size_t end = listener.received().size() + count;
-    return test::eventually([&] { return listener.received().size() >= end; });
-  };
-  ASSERT_TRUE(wait_for_more(500)) << player.output();
-
-  ChildProcess recorder(
-      {kMissedCordis, "record", "missed", "--domain", domain, "--topics", "lab/count", "-o", take});
-  ASSERT_TRUE(recorder.wait_for_output("records into", kPatience));
-  ASSERT_TRUE(test::eventually([&] {
-    std::error_code absent;
-    const auto size = std::filesystem::file_size(take + ".part", absent);
-    return !absent && size > 3000;
-  }));
-  recorder.signal(SIGSTOP);
-  ASSERT_TRUE(wait_for_more(30000));  // more than DDS keeps and sockets hold
-  recorder.signal(SIGCONT);
-  // What sockets held comes first: a busy machine takes seconds to get past it.
-  ASSERT_TRUE(test::eventually([&] { return holds_gap(take + ".part"); })) << recorder.output();
-  recorder.signal(SIGINT);
-  EXPECT_EQ(recorder.wait(kPatience), 3) << recorder.output();
-  EXPECT_NE(recorder.output().find("lost on the way"), std::string::npos) << recorder.output();
-  player.signal(SIGINT);
-  EXPECT_EQ(player.wait(kPatience), 0) << player.output();
-
-  ChildProcess info({kMissedCordis, "info", take, "--json"});
-  EXPECT_EQ(info.wait(kPatience), 3);
-  const auto json = nlohmann::json::parse(info.output());
+  const nlohmann::json json = info_of_gap(folder, "lab/count", GetParam(), 3, "lost on the way");
   const auto missed = json["missed"];
   EXPECT_GT(missed["lost"], 1000);
   EXPECT_GT(missed["before"], 0);
@@ -79,12 +87,21 @@ TEST_P(RecorderThatStops, CountsWhatItMissesInTheTake) {
   const auto words = json["metadata"]["cordis.recording"];
   EXPECT_EQ(words["lost lab/count"], std::to_string(missed["lost"].get<std::uint64_t>()));
   // Every number of the writer is in one of the three counts.
-  const mcap::Reader reader(take);
+  const mcap::Reader reader(folder / "take.mcap");
   mcap::MessageCursor cursor = reader.messages();
   std::uint32_t last = 0;
   for (mcap::Message message; cursor.next(message);) last = message.sequence;
   EXPECT_EQ(last, missed["before"].get<std::uint64_t>() + missed["lost"].get<std::uint64_t>() +
                       reader.statistics().message_count);
+}
+
+TEST(MissedMessages, OfAReplacingTopicAreNoLossToTheRecorderNorToItsTake) {
+  const mcap::TakeFolder folder;
+  const nlohmann::json json =
+      info_of_gap(folder, "scene/frame", false, 0, "replaced by newer ones");
+  const auto missed = json["missed"];
+  EXPECT_GT(missed["lost"], 0);
+  EXPECT_EQ(missed["lost"], missed["replaced"]);
 }
 
 /// The end of `cordis info` on a take whose recorder has missed so many messages.
