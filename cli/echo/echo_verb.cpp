@@ -17,9 +17,11 @@
 #include "cli/exit_code.h"
 #include "cli/live_output.h"
 #include "cli/message_types.h"
+#include "cli/session_end.h"
 #include "cli/session_words.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 
 namespace cordis::cli {
 namespace {
@@ -53,12 +55,13 @@ int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
   const SessionAddress address = words.target.address();
   const record::MessageTypes types = known_message_types(words.idl_files);
   node::install_stop_signals();
+  SessionEnd end(address);
   TopicListener listener(address, words.topic, true);
   SilenceNote silence("echo", address.session, words.topic, listener.participant());
   std::uint64_t printed = 0;
   std::uint64_t received = 0;
   auto last = std::chrono::steady_clock::now();
-  while (!node::stop_requested() && (!count || printed < *count)) {
+  while (!node::stop_requested() && (!count || printed < *count) && end.update().empty()) {
     for (const ReceivedMessage& message : listener.take(kEchoWait)) {
       ++received;
       const auto type = types.find(message.topic.type);
@@ -82,6 +85,10 @@ int echo_session(const EchoWords& words, std::optional<std::uint64_t> count,
       throw std::runtime_error(received > 0
                                    ? "no message was printed for " + words.timeout
                                    : silence.text() + " (--timeout " + words.timeout + ")");
+  }
+  if (!end.update().empty() && (!count || printed < *count)) {
+    node::print_text(stderr, "cordis echo: " + end.update() + "\n");
+    if (printed == 0) return kFailure;
   }
   if (listener.left_out() > 0)
     std::fprintf(stderr,
@@ -119,9 +126,9 @@ void add_echo_verb(CommandLine& line) {
   verb.list("--idl", "FILE,...", words->idl_files, "IDL files of types that Cordis does not have");
   add_session_options(verb, words->target);
   verb.examples(
-      "Of a session it prints until Ctrl-C, of a take all that it holds, by the types that the "
-      "take\n"
-      "describes. time_s counts from 1970, by the clock of the writer.\n"
+      "Of a session it prints until Ctrl-C or the end of the session, of a take all that it\n"
+      "holds, by the types that the take describes. time_s counts from 1970, by the clock of the\n"
+      "writer.\n"
       "--domain N without a session prints what all programs of the domain say.\n"
       "Exit code: 0 done, 1 no such session, no message in time or failed, 2 no take or bad "
       "command line, 3 messages\n"

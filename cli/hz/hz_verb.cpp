@@ -16,6 +16,7 @@
 #include "cli/exit_code.h"
 #include "cli/hz/traffic.h"
 #include "cli/live_output.h"
+#include "cli/session_end.h"
 #include "cli/session_words.h"
 #include "cli/topic_listener.h"
 #include "node/stop.h"
@@ -61,6 +62,7 @@ int hz(const HzWords& words) {
   if (!words.duration.empty()) duration = parse_duration(words.duration);
   const SessionAddress address = words.target.address();
   node::install_stop_signals();
+  SessionEnd end(address);
   TopicListener listener(address, words.topic, false);
   SilenceNote silence("hz", address.session, words.topic, listener.participant());
   std::map<std::string, Traffic> topics;
@@ -72,12 +74,16 @@ int hz(const HzWords& words) {
       topics[message.topic.name].add(message);
     silence.update(topics.size());
     const auto now = Clock::now();
-    over = duration && now >= began + *duration;
+    over = !end.update().empty() || (duration && now >= began + *duration);
     // What came since the last table is shown at the end, too.
     if (topics.empty() || (now < table + kTable && !over)) continue;
     print(topics);
     table = now;
     if (!flush_output()) return kSuccess;
+  }
+  if (!end.update().empty()) {
+    node::print_text(stderr, "cordis hz: " + end.update() + "\n");
+    return topics.empty() ? kFailure : kSuccess;
   }
   if (duration && topics.empty()) {
     if (silence.has_spoken()) return kFailure;
@@ -96,8 +102,9 @@ void add_hz_verb(CommandLine& line) {
   verb.option("--duration", "TIME", words->duration, "End after so long: 10s");
   add_session_options(verb, words->target);
   verb.examples(
-      "A table each second, until Ctrl-C: messages per second, the shortest and the longest time\n"
-      "between two of one writer as they came here, and numbers of writers that did not come.\n"
+      "A table each second, until Ctrl-C or the end of the session: messages per second, the\n"
+      "shortest and the longest time between two of one writer as they came here, and numbers of\n"
+      "writers that did not come.\n"
       "What was written before the reading began, and comes again for late readers, is not "
       "counted.\n"
       "Exit code: 0 done, 1 no such session or no message, 2 bad command line.\n\n"

@@ -15,12 +15,14 @@
 #include "cli/duration.h"
 #include "cli/exit_code.h"
 #include "cli/progress_line.h"
+#include "cli/session_end.h"
 #include "cli/session_launch.h"
 #include "cli/session_words.h"
 #include "node/last_take.h"
 #include "node/log.h"
 #include "node/runtime_folder.h"
 #include "node/stop.h"
+#include "node/terminal_text.h"
 #include "record_node/idl/idl_parser.h"
 #include "record_node/mcap/writer.h"
 #include "record_node/plan_report.h"
@@ -89,6 +91,7 @@ int record(const RecordWords& words) {
   std::optional<std::chrono::nanoseconds> longest;
   if (!words.max_duration.empty()) longest = parse_duration(words.max_duration);
   const SessionAddress address = words.target.address();
+  SessionEnd end(address);
   record::RecorderConfig config = config_of(words, address);
   config.out = take_of(words, address);
   node::install_log("record");
@@ -121,9 +124,10 @@ int record(const RecordWords& words) {
       if (!unmatched.empty()) spdlog::warn("{}", unmatched);
     }
     const bool long_enough = longest && seconds_of(*longest) <= now.seconds;
-    if (now.is_over || long_enough) break;
+    if (now.is_over || long_enough || !end.update().empty()) break;
   }
   line.end();
+  if (!end.update().empty()) node::print_text(stderr, "cordis record: " + end.update() + "\n");
   const record::RecorderFigures done = recorder.close();
   const std::filesystem::path file = done.has_failed ? mcap::part_of(config.out) : config.out;
   std::printf("%s: %llu messages of %llu topics, %.1f MB in %.1f s\n", file.c_str(),
@@ -163,8 +167,9 @@ void add_record_verb(CommandLine& line) {
   verb.option("--compression", "NAME", words->compression, "zstd, lz4 or none (zstd)");
   add_session_options(verb, words->target);
   verb.examples(
-      "It records until Ctrl-C. Without a session, --domain N records all messages that programs\n"
-      "of this host publish in that DDS domain, of whatever types.\n"
+      "It records until Ctrl-C or the end of the session. Without a session, --domain N records\n"
+      "all messages that programs of this host publish in that DDS domain, of whatever types,\n"
+      "until Ctrl-C.\n"
       "No process waits for the recorder. Before a slow disk it drops frames first, and counts "
       "them.\n"
       "Exit code: 0 done, 1 failed or nothing recorded, 2 bad command line, 3 done with loss.\n\n"
