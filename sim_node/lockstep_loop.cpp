@@ -1,9 +1,10 @@
 // sim_node/lockstep_loop.cpp
 #include "sim_node/lockstep_loop.h"
 
+#include <algorithm>
 #include <chrono>
-#include <limits>
 #include <string>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -16,15 +17,14 @@ using namespace std::chrono_literals;
 
 constexpr auto kPatience = 50ms;  // how long a wait for a sample may keep the loop from a stop
 constexpr std::int64_t kLongWait = 2'000'000'000;  // for a sample [ns]
-constexpr std::int64_t kWaitIsReported = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
-LockstepLoop::LockstepLoop(SceneLoop& loop, dds::Participant& participant)
-    : loop_(loop), roster_(participant) {}
+LockstepLoop::LockstepLoop(SceneLoop& loop, dds::Participant& participant, Patience patience)
+    : loop_(loop), patience_(std::move(patience)), roster_(participant) {}
 
-void LockstepLoop::run() {
-  while (!loop_.finished()) {
+std::string LockstepLoop::run() {
+  while (!loop_.finished() && absence_.empty()) {
     if (!loop_.execute_or_wait()) {
       waits_since_nsec_ = 0;
       continue;
@@ -33,6 +33,7 @@ void LockstepLoop::run() {
     if (!loop_.advance()) continue;
     loop_.devices().answer_all(loop_.simulation());
   }
+  return absence_;
 }
 
 bool LockstepLoop::receive() {
@@ -54,9 +55,15 @@ void LockstepLoop::report_wait(const DeviceExchange& device) {
   absences_.report(now);
   silences_.report(now);
   roster_.update();
-  if (waits_since_nsec_ == 0) waits_since_nsec_ = now;
-  if (now - waits_since_nsec_ < kLongWait) return;
-  waits_since_nsec_ = kWaitIsReported;
+  if (waits_since_nsec_ == 0) {
+    waits_since_nsec_ = now;
+    is_wait_reported_ = false;
+  }
+  const bool is_known = std::ranges::count(patience_.played, device.device()) > 0;
+  if (!is_known && patience_.wait_nsec > 0 && now - waits_since_nsec_ >= patience_.wait_nsec)
+    absence_ = sentence_of_absence(device);
+  if (is_wait_reported_ || now - waits_since_nsec_ < kLongWait) return;
+  is_wait_reported_ = true;
   const std::string alive = roster_.name_of(msg::KIND_DEVICE_NODE);
   if (!(alive.empty() ? absences_ : silences_).record(now)) return;
   std::string port;  // the first of the device
@@ -68,6 +75,12 @@ void LockstepLoop::report_wait(const DeviceExchange& device) {
   spdlog::warn(
       "has been waiting for the device '{}' for {} s: {}; nothing moves until it plays port '{}'",
       device.device(), kLongWait / 1'000'000'000, who, port);
+}
+
+std::string LockstepLoop::sentence_of_absence(const DeviceExchange& device) const {
+  return "no device '" + device.device() + "' has joined for " +
+         std::to_string(patience_.wait_nsec / 1'000'000'000) + " s, and no node of " +
+         patience_.launch_file + " plays it: nothing moves without it";
 }
 
 }  // namespace cordis::sim

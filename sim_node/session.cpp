@@ -1,6 +1,9 @@
 // sim_node/session.cpp
 #include "sim_node/session.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -9,7 +12,7 @@
 #include "node/config/count_text.h"
 #include "node/machine/processor_quota.h"
 #include "sim_node/asap_loop.h"
-#include "sim_node/lockstep_loop.h"
+#include "sim_node/checks/device_check.h"
 #include "sim_node/realtime_loop.h"
 #include "sim_node/run/thread_count.h"
 
@@ -31,6 +34,7 @@ Session::Session(const node::NodeStart& start, SimConfig config)
       signals_for_(config.signals_for),
       recorded_by_(config.recorded_by),
       threads_(config.threads),
+      duration_s_(config.duration_s),
       participant_(start.config()),
       loop_participant_(start.join_for_force_loop()),
       devices_(participant_, loop_participant_, start.epoch, start.launch.clock,
@@ -74,7 +78,7 @@ int Session::run() {
   if (!signals_for_.empty()) loop_.wait_for_signal_reader(signals_for_);
   for (const std::string& recorder : recorded_by_) loop_.wait_for_recorder(recorder);
   snapshot_.begin();
-  run_loop();
+  const std::string given_up = run_loop();
   loop_.show_rest();
   loop_.mailbox().close();
   snapshot_.end();
@@ -88,21 +92,39 @@ int Session::run() {
     spdlog::error("{}", failure);
     return 1;
   }
+  if (!given_up.empty()) {
+    snapshot_.record_failure(given_up);
+    snapshot_.set_phase(msg::PHASE_FAILED);
+    spdlog::error("{}", given_up);
+    return 1;
+  }
   snapshot_.set_phase(msg::PHASE_STOPPED);
   spdlog::info("state hash {:016x} after {}", simulation.world().state_hash(),
                config::count_text(simulation.world().step_count(), "step"));
   return 0;
 }
 
-void Session::run_loop() {
+/// A run that has a duration does not wait without end: wall time counts where simulated time stands.
+Patience Session::patience() const {
+  constexpr double kMin = 5.0;  // until a device counts as absent [s]
+  if (duration_s_ <= 0.0) return {};
+  const double wait_s = std::min(std::max(duration_s_, kMin), 1e9);
+  return {start_.launch.file, played_devices(start_.launch),
+          static_cast<std::int64_t>(std::ceil(wait_s)) * 1'000'000'000};
+}
+
+std::string Session::run_loop() {
   switch (start_.launch.clock) {
     case config::Clock::kRealtime:
-      return run_realtime(loop_, status_);
+      run_realtime(loop_, status_);
+      break;
     case config::Clock::kLockstep:
-      return LockstepLoop(loop_, participant_).run();
+      return LockstepLoop(loop_, participant_, patience()).run();
     case config::Clock::kAsap:
-      return run_asap(loop_);
+      run_asap(loop_);
+      break;
   }
+  return {};
 }
 
 }  // namespace cordis::sim

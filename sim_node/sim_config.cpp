@@ -30,10 +30,10 @@ bool is_of_cordis(const std::filesystem::path& file) {
 }
 
 /// Checks every port of a scene against the device files of the launch, and its stability.
-scene::Scene checked(PlannedScene planned, const config::Launch& launch, bool force,
+scene::Scene checked(PlannedScene planned, const config::Launch& launch, bool force, SceneUse use,
                      config::Problems& problems) {
   if (!problems.has_errors()) {
-    check_devices(launch, planned.scene, problems);
+    check_devices(launch, planned.scene, problems, use);
     check_stability(planned.scene, force, problems);
   }
   return std::move(planned.scene);
@@ -88,7 +88,7 @@ scene::Scene load_checked_scene(const config::Launch& launch, const std::string&
                                 const config::Place& referrer, bool force,
                                 config::Problems& problems) {
   return checked(plan_scene(launch.resolve(path).string(), referrer, problems), launch, force,
-                 problems);
+                 SceneUse::kFirst, problems);
 }
 
 scene::Scene load_next_scene(const config::Launch& launch, const std::string& path, bool force,
@@ -115,7 +115,7 @@ scene::Scene load_next_scene(const config::Launch& launch, const std::string& pa
   problems.read_below(folder.string());
   PlannedScene planned = plan_scene(file.string(), {}, problems);
   problems.read_below({});  // the launch file may name device files of any folder
-  return checked(std::move(planned), launch, force, problems);
+  return checked(std::move(planned), launch, force, SceneUse::kLater, problems);
 }
 
 }  // namespace cordis::sim

@@ -106,7 +106,8 @@ SceneCheck check_scene(const CheckOptions& options) {
   check.choice = std::move(planned.rate);
   std::vector<std::vector<sim::DeviceAtPort>> devices(check.scene.ports.size());
   if (launch) {
-    for (sim::DeviceAtPort& device : sim::check_devices(*launch, check.scene, check.problems))
+    for (sim::DeviceAtPort& device :
+         sim::check_devices(*launch, check.scene, check.problems, sim::SceneUse::kFirst))
       devices[device.port].push_back(std::move(device));
   }
   constexpr double kBand = 100.0;

@@ -29,6 +29,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kLongestStart{5};
+constexpr const char* kNoDevice =
+    "no device has joined that a port of the scene plays: the ports stood still";
 
 /// Nodes of the launch file that other launchers start.
 std::vector<OtherNode> others_of(const config::Launch& launch, const RunPlan& plan) {
@@ -76,7 +78,13 @@ class Session : public Watcher {
         restarts_(plan.nodes.size(), 0),
         is_down_(plan.nodes.size(), false),
         failures_(plan.nodes.size()),
-        started_(Clock::now()) {
+        started_(Clock::now()),
+        has_devices_elsewhere_(std::ranges::any_of(launch.nodes, [&plan](const auto& node) {
+          return node.program == "device_node" &&
+                 std::ranges::none_of(plan.nodes, [&node](const PlannedNode& planned) {
+                   return planned.name == node.name;
+                 });
+        })) {
     for (const PlannedNode& node : plan.nodes)
       is_needed_.push_back(node.required || (options.records && node.name == kRecorder));
     if (launch.clock == config::Clock::kRealtime) timers_.emplace();
@@ -158,6 +166,7 @@ class Session : public Watcher {
     if (!reason.empty()) output_.say(reason);
     output_.flush();
     const bool over = plan_.wall_duration && is_over(*plan_.wall_duration);
+    if (over && !stopped_) has_stood_still_ = is_standing_still();
     if (over) stop();
     return over;
   }
@@ -179,6 +188,7 @@ class Session : public Watcher {
       if (restarts_[i] > 0)
         output_.print(names[i] + " was started again " + config::count_text(restarts_[i], "time"));
     }
+    if (has_stood_still_) output_.print(kNoDevice);
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (is_down_[i]) output_.print(names[i] + " was down at the end");
       if (is_lost(i)) has_lost_node_ = true;
@@ -200,10 +210,25 @@ class Session : public Watcher {
     return status != nullptr && status->phase() == msg::PHASE_FAILED;
   }
 
-  /// True if the run needs the node, and did not keep it to the end.
+  /// True if the run needs the node, and did not keep it to the end, or it waited in vain.
   bool is_lost(std::size_t process) const {
-    return is_needed_[process] && (is_down_[process] || !failures_[process].empty() ||
-                                   has_failed(plan_.nodes[process].name));
+    const PlannedNode& node = plan_.nodes[process];
+    const bool waited = has_stood_still_ && node.program == "sim_node";
+    return is_needed_[process] &&
+           (is_down_[process] || !failures_[process].empty() || waited || has_failed(node.name));
+  }
+
+  /// True if the scene has waited for its devices from the start, and none is to come: those of this launch
+  /// are played by no port.
+  bool is_standing_still() const {
+    bool sim_waits = false;
+    for (const PlannedNode& node : plan_.nodes) {
+      const msg::NodeStatus* status = board_.find(node.name);
+      const msg::NodePhase phase = status == nullptr ? msg::PHASE_STARTING : status->phase();
+      if (node.program == "device_node" && phase != msg::PHASE_UNUSED) return false;
+      sim_waits = sim_waits || (node.program == "sim_node" && phase == msg::PHASE_WAITING);
+    }
+    return sim_waits && !has_played_ && !has_devices_elsewhere_;
   }
 
   /// How each node stood at the end, for the summary.
@@ -215,6 +240,7 @@ class Session : public Watcher {
       NodeEnd& end = ends.emplace_back(NodeEnd{.name = node.name, .program = node.program});
       end.has_failed = is_lost(i);
       end.reason = is_down_[i] ? "was down at the end" : failures_[i];
+      if (has_stood_still_ && node.program == "sim_node") end.reason = kNoDevice;
       if (!failures_[i].empty()) end.phase = node::word_of(msg::PHASE_FAILED);
       if (status == nullptr) continue;
       if (failures_[i].empty()) end.phase = node::word_of(status->phase());
@@ -257,7 +283,10 @@ class Session : public Watcher {
         report_twin(status);
         continue;
       }
-      if (board_.put(status) && status.kind() == msg::KIND_VIZ_NODE) show_page(status);
+      if (!board_.put(status)) continue;
+      if (status.kind() == msg::KIND_VIZ_NODE) show_page(status);
+      has_played_ = has_played_ ||
+                    (status.kind() == msg::KIND_SIM_NODE && status.phase() == msg::PHASE_RUNNING);
     }
   }
 
@@ -342,10 +371,13 @@ class Session : public Watcher {
   std::vector<std::string> failures_;  // how a node ended that failed; else empty
   Clock::time_point started_;
   std::optional<Clock::time_point> counted_from_;
-  bool stopped_ = false;        // a required node, the duration or a signal has ended the session
-  int result_ = kSuccess;       // of the first required node that ended
-  int failure_ = kSuccess;      // of the first node that failed
-  bool has_lost_node_ = false;  // one that the run needs has failed, or was down at the end
+  bool has_devices_elsewhere_;    // of the launch file, which other launchers start
+  bool has_played_ = false;       // the scene, with a device or without ports
+  bool has_stood_still_ = false;  // until the duration was over
+  bool stopped_ = false;          // a required node, the duration or a signal has ended the session
+  int result_ = kSuccess;         // of the first required node that ended
+  int failure_ = kSuccess;        // of the first node that failed
+  bool has_lost_node_ = false;    // one that the run needs has failed, or was down at the end
 };
 
 }  // namespace

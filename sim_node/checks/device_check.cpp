@@ -84,7 +84,8 @@ class PortProblems {
 /// A device_node of a launch file, and what its device file promises.
 struct LaunchedDevice {
   const config::LaunchNode* node = nullptr;
-  std::string plays;  // name of the device
+  std::string plays;    // name of the device
+  config::Place place;  // of that name
   std::optional<config::DeviceLimits> limits;
 };
 
@@ -106,12 +107,53 @@ void warn_of_absence(const config::Launch& launch, const std::vector<LaunchedDev
                      const scene::Port& port, PortProblems& problems) {
   std::vector<std::string> names;
   for (const LaunchedDevice& device : devices) names.push_back(device.plays);
-  const std::string near = config::nearest_word(port.device, names);
   problems.warning(PortProblems::About::kAbsence, port.place,
                    "port '" + port.name + "' wants the device '" + port.device + "', and " +
                        launch.file +
                        " has no device_node of that name: " + result_of_absence(launch.clock),
-                   near.empty() ? "" : "did you mean '" + near + "'?");
+                   config::did_you_mean(port.device, names));
+}
+
+/// Says that a port waits while a device waits for a port: a name is wrong.
+void refuse_name(const config::Launch& launch, const std::vector<std::string>& unused,
+                 const scene::Port& port, PortProblems& problems) {
+  const std::string near = config::did_you_mean(port.device, unused);
+  problems.error(
+      PortProblems::About::kAbsence, port.place,
+      "port '" + port.name + "' wants the device '" + port.device + "', and " + launch.file +
+          " has no device_node of that name; no port wants its '" + unused.front() + "'",
+      near.empty() ? "one name in both, or 'required: false' of a device for another scene" : near);
+}
+
+bool is_wanted(const scene::Scene& scene, const std::string& device) {
+  return std::ranges::any_of(scene.ports,
+                             [&](const scene::Port& port) { return port.device == device; });
+}
+
+/// The devices of required nodes that no port of the scene plays.
+std::vector<std::string> unused_devices(const std::vector<LaunchedDevice>& devices,
+                                        const scene::Scene& scene) {
+  std::vector<std::string> unused;
+  for (const LaunchedDevice& device : devices) {
+    if (device.node->required && !is_wanted(scene, device.plays)) unused.push_back(device.plays);
+  }
+  return unused;
+}
+
+/// A hot standby of a device that neither a node nor a port has, with nearly the name of a node.
+void refuse_standbys_of_none(const std::vector<LaunchedDevice>& devices, const scene::Scene& scene,
+                             config::Problems& problems) {
+  std::vector<std::string> names;
+  for (const LaunchedDevice& device : devices) names.push_back(device.node->name);
+  for (const LaunchedDevice& device : devices) {
+    if (std::ranges::count(names, device.plays) > 0 || is_wanted(scene, device.plays)) continue;
+    std::vector<std::string> others = names;
+    std::erase(others, device.node->name);
+    const std::string near = config::did_you_mean(device.plays, others);
+    if (near.empty()) continue;
+    problems.error(device.place, "'standby_for' names no device_node: '" + device.plays + "'",
+                   near);
+  }
 }
 
 void check_axes(const scene::Port& port, const config::DeviceLimits& limits,
@@ -181,7 +223,10 @@ std::vector<LaunchedDevice> launched_devices(const config::Launch& launch) {
     config::Problems of_the_device;
     const config::Value mapping = config::device_mapping(launch, node, of_the_device);
     config::MappingReader reader(mapping, "device", of_the_device);
-    LaunchedDevice device{&node, config::read_played_device(reader, node.name).name, {}};
+    LaunchedDevice device{&node,
+                          config::read_played_device(reader, node.name).name,
+                          reader.place_of("standby_for"),
+                          {}};
     const config::DeviceLimits limits = config::read_device_limits(reader);
     if (!of_the_device.has_errors()) device.limits = limits;
     devices.push_back(std::move(device));
@@ -195,20 +240,36 @@ int delay_periods_of(config::Clock clock) noexcept {
   return clock == config::Clock::kLockstep ? 0 : 1;
 }
 
+std::vector<std::string> played_devices(const config::Launch& launch) {
+  std::vector<std::string> names;
+  for (const LaunchedDevice& device : launched_devices(launch)) names.push_back(device.plays);
+  return names;
+}
+
 std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,
-                                        config::Problems& all_problems) {
+                                        config::Problems& all_problems, SceneUse use) {
   PortProblems problems;
   const std::vector<LaunchedDevice> devices = launched_devices(launch);
+  const bool is_first = use == SceneUse::kFirst;
+  const std::vector<std::string> unused =
+      is_first ? unused_devices(devices, scene) : std::vector<std::string>();
+  if (is_first) refuse_standbys_of_none(devices, scene, all_problems);
   for (const scene::Port& port : scene.ports) {
     bool any = false;
+    bool has_own = false;  // and not a standby alone
     for (const LaunchedDevice& device : devices) {
       if (device.plays != port.device) continue;
       any = true;
+      has_own = has_own || device.node->required || device.node->name == port.device;
       if (!device.limits) continue;
       check_axes(port, *device.limits, problems);
       check_rate(port, *device.limits, scene.gesture_rate_hz, problems);
     }
-    if (!any) warn_of_absence(launch, devices, port, problems);
+    if (!has_own && !unused.empty()) {
+      refuse_name(launch, unused, port, problems);
+    } else if (!any) {
+      warn_of_absence(launch, devices, port, problems);
+    }
     problems.next_port();
   }
   std::vector<DeviceAtPort> found;

@@ -25,12 +25,24 @@ struct DeviceAtPort {
 /// in lockstep. In real time it is measured; before that 1 is assumed.
 int delay_periods_of(config::Clock clock) noexcept;
 
+/// What a wrong name is: of the scene that a session begins with an error. A scene that is loaded later has what
+/// devices there are.
+enum class SceneUse { kFirst, kLater };
+
+/// The names of the devices that nodes of the launch file play.
+std::vector<std::string> played_devices(const config::Launch& launch);
+
 /// Holds every port of the scene against every node that may play its device: axes, rate, travel,
 /// and how stiff a port the device supports. A port that is too stiff for an answer a period late,
 /// and not for a faster one, is a warning in real time. Until the answers are measured to be fast
 /// enough the device is given no force. A node whose device file has faults reports them itself.
+///
+/// A port whose device no node has may wait for another program: that is a warning. Beside a required device_node
+/// that no port plays it is a wrong name, an error for the first scene; likewise a `standby_for` that is nearly
+/// the name of a node.
 /// @return the others, port by port, in the order of the launch file
 std::vector<DeviceAtPort> check_devices(const config::Launch& launch, const scene::Scene& scene,
-                                        config::Problems& problems);
+                                        config::Problems& problems,
+                                        SceneUse use = SceneUse::kLater);
 
 }  // namespace cordis::sim

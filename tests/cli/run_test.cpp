@@ -253,11 +253,11 @@ TEST(Run, IsNotCompleteWhereANodeThatItNeedsWasKilled) {
 
 /// Runs a session for 100 ms. The launcher waits 5 s for all nodes to run, and says when that was
 /// not enough: a busy machine gets five tries.
-std::string output_of_a_short_run(FakeSession& session) {
+std::string output_of_a_short_run(FakeSession& session, int code = 0) {
   std::string output;
   for (int i = 0; i < 5; ++i) {
     const auto run = session.start({"--duration", "100ms"});
-    EXPECT_EQ(end_of(*run), 0);
+    EXPECT_EQ(end_of(*run), code) << run->output();
     output = run->output();
     if (!contains(output, "not all nodes run yet")) break;
   }
@@ -270,7 +270,27 @@ TEST(Run, CountsTheDurationAtOnceWhereTheSceneWaitsForNobody) {
   session.node("key", "phase unused");
   session.node("view", "run");
 
-  EXPECT_FALSE(contains(output_of_a_short_run(session), "not all nodes run yet"));
+  const std::string output = output_of_a_short_run(session, 1);
+
+  EXPECT_FALSE(contains(output, "not all nodes run yet"));
+  EXPECT_TRUE(contains(output, "no device has joined that a port of the scene plays"));
+}
+
+TEST(Run, FailsWhereNoDeviceCameForAPortAndNoneWasExpectedElsewhere) {
+  FakeSession session;
+  session.node("sim", "phase waiting");
+  session.node("key", "phase unused");
+  session.node("view", "run");
+  const std::string summary = session.directory() / "summary.json";
+
+  const auto run = session.start({"--duration", "100ms", "--summary", summary});
+  EXPECT_EQ(end_of(*run), 1) << run->output();
+  EXPECT_TRUE(contains(text_of(summary), R"("complete": false)")) << text_of(summary);
+  EXPECT_TRUE(contains(text_of(summary), "no device has joined")) << text_of(summary);
+
+  const auto part = session.start({"--duration", "100ms", "--only", "sim,view"});
+  EXPECT_EQ(end_of(*part), 0) << part->output();
+  EXPECT_FALSE(contains(part->output(), "no device has joined")) << part->output();
 }
 
 TEST(Run, EndsByItselfOnceAllNodesHaveRunForTheDuration) {

@@ -300,7 +300,7 @@ TEST(RecordPlay, DoesNotBeginASessionWhoseTakeHasNoPlace) {
                         << "session: nowhere\n"
                         << "record: {out: file/take.mcap}\n"
                         << "nodes: {sim: {node: sim_node, scene: "
-                        << CORDIS_SOURCE_DIR "/launch_configs/scenes/plucked_string.yaml}}\n";
+                        << CORDIS_SOURCE_DIR "/launch_configs/scenes/hanging_chain.yaml}}\n";
   ChildProcess named({kCordis, "run", launch, domain_word(), "--duration", "1s"});
   EXPECT_EQ(named.wait(kPatience), 2) << named.output();
   EXPECT_NE(named.output().find("launch.yaml:3:15: error: no take can be made in "),

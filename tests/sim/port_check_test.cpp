@@ -6,11 +6,15 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "node/config/mapping_reader.h"
 #include "node/config/name_hash.h"
@@ -121,6 +125,69 @@ TEST(PortCheck, SaysWhatASessionOfEachClockDoesWithoutTheDeviceOfAPort) {
         problems.all()[0].message,
         "port 'key' wants the device 'keyboard', and l has no device_node of that name: " + result);
   }
+}
+
+/// A device_node of a launch file, and further keys of it.
+std::string device_node(const std::string& name, const std::string& keys = {}) {
+  return test::filled("<name>: {node: device_node, device: <file><keys>}",
+                      {{"name", name},
+                       {"file", testing::TempDir() + "names." + std::to_string(getpid())},
+                       {"keys", keys}});
+}
+
+/// Problems of a session that begins with a scene whose port wants the keyboard.
+std::string problems_with(const std::vector<std::string>& nodes, SceneUse use = SceneUse::kFirst) {
+  const scene::Scene scene = walls_of("500");
+  const std::string device = testing::TempDir() + "names." + std::to_string(getpid());
+  std::ofstream(device) << "{cordis: 1, axes: 1}";
+  std::string text;
+  for (const std::string& node : nodes) text += (text.empty() ? "" : ", ") + node;
+  config::Problems problems;
+  const config::Launch launch =
+      config::load_launch_text("{cordis: 1, nodes: {" + text + "}}", "l", {}, problems);
+  EXPECT_EQ(problems.text(), "");
+  check_devices(launch, scene, problems, use);
+  std::filesystem::remove(device);
+  return problems.text();
+}
+
+TEST(PortCheck, RefusesAWrongNameWhereASessionBegins) {
+  const std::string error = problems_with({device_node("keybord")});
+  EXPECT_NE(error.find("t:10:3: error: port 'key' wants the device 'keyboard', and l has no "
+                       "device_node of that name; no port wants its 'keybord'"),
+            std::string::npos)
+      << error;
+  EXPECT_NE(error.find("did you mean 'keybord'?"), std::string::npos) << error;
+
+  const std::string other = problems_with({device_node("pedal")});
+  EXPECT_NE(other.find("error: port 'key' wants"), std::string::npos) << other;
+  EXPECT_NE(other.find("'required: false' of a device for another scene"), std::string::npos);
+
+  const std::string standby = problems_with(
+      {device_node("keybord"), device_node("hand", ", standby_for: keyboard, required: false")});
+  EXPECT_NE(standby.find("no port wants its 'keybord'"), std::string::npos) << standby;
+}
+
+TEST(PortCheck, RefusesAStandbyOfAMisspeltNode) {
+  const std::string error = problems_with(
+      {device_node("keyboard"), device_node("hand", ", standby_for: keybord, required: false")});
+  EXPECT_NE(error.find("error: 'standby_for' names no device_node: 'keybord'"), std::string::npos)
+      << error;
+  EXPECT_NE(error.find("did you mean 'keyboard'?"), std::string::npos) << error;
+}
+
+TEST(PortCheck, LeavesNamesAloneThatAreForAnotherProgramOrScene) {
+  const std::string optional = problems_with({device_node("pedal", ", required: false")});
+  EXPECT_EQ(optional.find("error"), std::string::npos) << optional;
+  EXPECT_NE(optional.find("warning: port 'key' wants"), std::string::npos) << optional;
+
+  const std::string alone = problems_with({"view: {node: viz_node}"});
+  EXPECT_EQ(alone.find("error"), std::string::npos) << alone;
+
+  EXPECT_EQ(problems_with({device_node("keyboard"), device_node("pedal")}), "");
+
+  const std::string later = problems_with({device_node("keybord")}, SceneUse::kLater);
+  EXPECT_EQ(later.find("error"), std::string::npos) << later;
 }
 
 /// The device file `{axes: 1, ...}` with these keys.
