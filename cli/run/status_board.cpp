@@ -73,6 +73,12 @@ bool has_account(const msg::NodeStatus& status) {
          (status.kind() == msg::KIND_DEVICE_NODE && has_ended);
 }
 
+/// A law without a largest slope, near its pole, gives a number that says no more than that.
+std::string stability_number_text(double number) {
+  constexpr double kMeaningful = 1e6;
+  return number <= kMeaningful ? fmt::format("{:.3g} of 4", number) : "not bounded";
+}
+
 /// What does not fit the table, in lines.
 std::string account_of(const std::string& node, const msg::NodeStatus& status) {
   std::string text;
@@ -98,9 +104,9 @@ std::string account_of(const std::string& node, const msg::NodeStatus& status) {
     if (std::isfinite(status.energy_j()) && std::isfinite(status.integration_error_j())) {
       text += fmt::format(
           "energy {:.3g} J: {:.3g} J through the ports, {:.3g} J by changes of state, {:.3g} J "
-          "taken by viscosity; largest K' + 2 Z' {:.3g} of 4\n",
+          "taken by viscosity; largest K' + 2 Z' {}\n",
           status.energy_j(), status.port_work_j(), status.switching_energy_j(),
-          status.dissipated_j(), status.largest_stability_number());
+          status.dissipated_j(), stability_number_text(status.largest_stability_number()));
       text += fmt::format("integration error {:.3g} J\n", status.integration_error_j());
     } else {
       text += "energy: not a finite number\n";

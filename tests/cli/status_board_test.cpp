@@ -164,6 +164,23 @@ keyboard: 1.20 % of 20000 samples without an answer of their own
 )");
 }
 
+TEST(StatusTable, CallsAStabilityNumberBeyondAllMeaningNotBounded) {
+  const auto table_of = [](double number) {
+    StatusBoard board(0);
+    msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);
+    sim.largest_stability_number(number);
+    board.put(sim);
+    return status_table({"sim"}, board);
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  for (const double number :
+       {1.2e64, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_TRUE(has(table_of(number), "largest K' + 2 Z' not bounded\n")) << table_of(number);
+  EXPECT_TRUE(has(table_of(41.0), "largest K' + 2 Z' 41 of 4\n")) << table_of(41.0);
+}
+
 TEST(StatusTable, SaysThatAnEnergyIsNotFiniteAndShowsNoFigureOfIt) {
   StatusBoard board(0);
   msg::NodeStatus sim = status_of("sim", msg::KIND_SIM_NODE, 1);

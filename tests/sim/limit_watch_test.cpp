@@ -2,11 +2,15 @@
 #include "sim_node/checks/limit_watch.h"
 
 #include <cmath>
+#include <memory>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "sim_node/run/bound_text.h"
+#include "sim_node/scene/sections/scene_reader.h"
 #include "tests/sim/loaded_scenes.h"
+#include "tests/support/filled.h"
 #include "tests/support/watched_scenes.h"
 
 namespace cordis::sim {
@@ -105,6 +109,51 @@ links:
   const double exact = 2.0 - 2.0 * std::cos(5.0 * M_PI / 6.0);
   EXPECT_GE(row("100000"), exact - 1e-9);
   EXPECT_LT(row("100000"), exact + 0.1);
+}
+
+/// Balls that lie apart, of the stiffness given, and one of them on a rope that is slack.
+std::string loose_balls(const std::string& touch, const std::string& rope) {
+  return test::filled(R"(cordis: 1
+name: loose
+space: 2
+step: {rate_hz: 1000}
+liaisons:
+  touch: {states: {on: {stiffness_n_per_m: <touch>, viscosity_n_s_per_m: 1, pulls: false, final: true}}}
+  rope:
+    start: slack
+    states:
+      slack: {viscosity_n_s_per_m: 0.01, exits: [{to: taut, when: "elongation_m > 1"}]}
+      taut: {stiffness_n_per_m: <rope>, final: true}
+matter:
+  balls: {kind: pack, count: 40, seed: 5, region: {from_m: [-0.1, 0], to_m: [0.1, 0.2]}, ball: {mass_kg: 0.1, radius_m: 0.01}}
+  bob: {kind: mass, ball: {mass_kg: 0.1, radius_m: 0.01}, at_m: [0.5, 0.5]}
+  wall: {kind: fixed, at_m: [-0.5, 0]}
+links:
+  - {liaison: touch, within: [balls, bob], rest: radii, range_m: 0.02}
+  - {liaison: rope, between: [wall, bob]}
+)",
+                      {{"touch", touch}, {"rope", rope}});
+}
+
+TEST(LimitWatch, IsANumberOfTheLiaisonsThatActWhereNothingIsCertified) {
+  const auto largest_of = [](const std::string& touch, const std::string& rope) {
+    config::Problems problems;
+    auto scene = std::make_shared<scene::Scene>(
+        scene::load_scene_text(loose_balls(touch, rope), "t", problems));
+    LoadedScene loaded(scene, kEpochOfSim, 1);
+    loaded.limits.update(loaded.simulation.world());
+    return loaded.limits.largest();
+  };
+  // A ball counts with as many others as lie around it in a plane, 6, each as 2 (K dt^2 + 2 Z dt) / m.
+  const auto of_balls = [](double stiffness) {
+    return 6.0 * 2.0 * (stiffness * 1e-6 + 2.0 * 1e-3) / 0.1;
+  };
+  const double of_slack_rope = 2.0 * 0.01 * 1e-3 / 0.1;
+
+  const double stiff_balls = largest_of("1e9", "10");
+  EXPECT_NEAR(stiff_balls, of_balls(1e9), 1.0);
+  const double stiff_rope = largest_of("3000", "1e9");
+  EXPECT_NEAR(stiff_rope, of_balls(3000.0) + of_slack_rope, 1e-9) << "the rope is slack";
 }
 
 TEST(Divergence, IsReportedWithTheLinkAndTheReason) {

@@ -146,7 +146,9 @@ export class Hud {
     set('by-switching', joined(withUnit(sim?.switching_energy_j, 'J')));
     set('by-viscosity', joined(withUnit(sim?.dissipated_j, 'J')));
     const limit = sim?.largest_stability_number;
-    set('limit', typeof limit === 'number' ? `${threeDigits(limit)} of 4` : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
+    // As the table at the end of `cordis run`.
+    const bounded = typeof limit === 'number' && limit > 1e6 ? 'not bounded' : undefined;
+    set('limit', typeof limit === 'number' ? (bounded ?? `${threeDigits(limit)} of 4`) : NONE, typeof limit === 'number' && limit >= 4 ? 'warn' : '');
     const partners = sim?.largest_partners ?? 0;
     const certified = sim?.certified_partners ?? null;
     set('partners', certified !== null ? `${partners} of ${certified}` : NONE, certified !== null && partners > certified ? 'warn' : '');
