@@ -102,19 +102,23 @@ TEST(EntryOfAPower, IsCertainAsFarAsTheStateBeforeGivesWay) {
 }
 
 TEST(EntryOfAPower, IsNotCertainOnceARestLengthWasMovedInAStateBefore) {
-  const auto moved = [](RestRule rule) {
-    Behaving law;
-    law.state(1.0);
-    if (rule == RestRule::kExpression) {
-      law.exit_to_rest(kOld > 0.01, 1, Term(0.0));
-    } else {
-      law.exit(kOld > 0.01, 1, rule);
-    }
+  const auto then_cubic = [](Behaving law) {
     return thrown(law.state(1000.0).exit(kOld > 0.01, 2).state(cubic(3e5)).state_machine);
   };
-  EXPECT_TRUE(may_begin_steep(moved(RestRule::kExpression)));
-  EXPECT_FALSE(may_begin_steep(moved(RestRule::kHere)));
-  EXPECT_TRUE(promised(moved(RestRule::kHere)).holds());
+  const auto moved_to = [](const Term& rest) {
+    return Behaving().state(1.0).exit_to_rest(kOld > 0.01, 1, rest);
+  };
+  const NetworkDescription here =
+      then_cubic(Behaving().state(1.0).exit(kOld > 0.01, 1, RestRule::kHere));
+  EXPECT_TRUE(may_begin_steep(then_cubic(moved_to(q(Quantity::kSpeed)))));
+  EXPECT_FALSE(may_begin_steep(here));
+  EXPECT_TRUE(promised(here).holds());
+  // A length that is known brings in 5 J, and is certain at the step for that.
+  NetworkDescription known = then_cubic(moved_to(Term(0.0)));
+  EXPECT_FALSE(may_begin_steep(known));
+  EXPECT_FALSE(promised(known).holds());
+  known.step = 0.98 * promised(known).certified.step;
+  EXPECT_LT(farthest_in(known, 20000), 0.5);
 }
 
 TEST(EntryOfAPower, IsNotCertainWhereEveryRoundBringsInMore) {
@@ -179,16 +183,16 @@ TEST(EntryOfAPower, BringsInNothingFromAStateThatStoresAsMuch) {
   plan::Reach reach;
   reach.brought = 0.001;
   reach.elongation = 0.1;
-  const auto entries = plan::entries_of(machine, 0.1, reach);
+  const auto entries = plan::entries_of(machine, 0.1, /*turns=*/false, reach);
   EXPECT_FALSE(entries[0].by_a_change);
   EXPECT_TRUE(entries[1].by_a_change);
   EXPECT_EQ(entries[1].brought, 0.0);
-  // From half as stiff: 2.02 mJ stretch it by 0.0136 m, and 7.5e4 e^4 there is twice 1.01 mJ.
+  // From half as stiff: it takes 1.01 mJ, so that it is 1.01 mJ less than what the other one has there.
   const StateMachine harder =
       Behaving().state(cubic(1.5e5)).exit(kOld > 0.05, 1).state(cubic(3e5)).state_machine;
-  const double brought = plan::entries_of(harder, 0.1, reach)[1].brought;
-  EXPECT_GT(brought, 0.00202);
-  EXPECT_LT(brought, 0.06);
+  const double brought = plan::entries_of(harder, 0.1, /*turns=*/false, reach)[1].brought;
+  EXPECT_GT(brought, 0.00101);
+  EXPECT_LT(brought, 0.00125);
 }
 
 }  // namespace

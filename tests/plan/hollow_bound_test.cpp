@@ -219,8 +219,10 @@ TEST(HollowBound, OfAContactOfTwoStatesIsCertainWhereItsExitSurelyEndsItBeforeTh
   EXPECT_EQ(why_uncertain(touching(2000.0, e<-0.001, e> 0.01), -1.0), "") << "sticky";
   EXPECT_EQ(why_uncertain(touching(2000.0, e<0.0, d> 0.06), -1.0), "");
   EXPECT_EQ(why_uncertain(touching(2000.0, e < 0.0, e >= 0.0), -1.0, {0.05, 0.03}), "");
-  EXPECT_EQ(why_uncertain(touching(2000.0, both(e<0.0, q(Quantity::kAge)> 0.1), e >= 0.0), -1.0),
-            "");
+  // It begins wherever a ball is in the wall by then, and so it brings in energy, but not on the axis.
+  const auto late = touching(2000.0, both(e<0.0, q(Quantity::kAge)> 0.1), e >= 0.0);
+  EXPECT_EQ(why_uncertain(late, -1.0).find("nothing bounds the energy that its changes of state"),
+            0U);
   const std::string on_axis = "it acts on the axis of a hollow cylinder, where the normal flips";
   struct Case {
     const char* name;

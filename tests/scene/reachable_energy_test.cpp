@@ -15,6 +15,7 @@ struct Case {
   const char* name;
   double rate_hz;
   const char* text;
+  int space = 2;
 };
 
 void PrintTo(const Case& one, std::ostream* stream) {
@@ -22,14 +23,14 @@ void PrintTo(const Case& one, std::ostream* stream) {
 }
 
 plan::Stability stability_of(const Case& one) {
-  Scene scene = sound_scene(2, one.text);
+  Scene scene = sound_scene(one.space, one.text);
   scene.network.step = 1.0 / one.rate_hz;
   return plan::stability_of(scene.network, plan::liaison_graph(scene.network));
 }
 
 class NotCertain : public testing::TestWithParam<Case> {};
 
-/// Each of these was certified, and exploded or let a ball through.
+/// Each of these was certified, and exploded, let a ball through or made energy without an end.
 TEST_P(NotCertain, AsItsEnergyIsCounted) {
   const plan::Stability stability = stability_of(GetParam());
   EXPECT_TRUE(stability.uncertainty.has_value() || !stability.holds());
@@ -132,6 +133,161 @@ links:
   - {liaison: hard, between_sets: [h, l], name: meet}
   - {liaison: soft, between_sets: [[walls, far], l], name: stop}
 )yaml"},
+    {"AClockThatLoadsASpring", 406.0, R"yaml(
+liaisons:
+  latch:
+    states:
+      off: {stiffness_n_per_m: 0.001, exits: [{to: on, when: time_s > 0.1}]}
+      on: {stiffness_n_per_m: 100, final: true}
+  stop: {elasticity: {kind: power, coefficient: 3000000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  w: {kind: fixed, at_m: 1}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.5}
+links:
+  - {liaison: latch, between: [g, m], rest_m: 0.1, name: latch}
+  - {liaison: stop, between: [m, w], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"ADistanceThatLoadsASpring", 540.0, R"yaml(
+liaisons:
+  latch:
+    states:
+      off: {exits: [{to: on, when: distance_m > 0.21}]}
+      on: {stiffness_n_per_m: 100, final: true}
+  stop: {elasticity: {kind: power, coefficient: 3000000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  w: {kind: fixed, at_m: 1.2}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.2, velocity_m_per_s: 0.5}
+  k: {kind: mass, mass_kg: 0.01, at_m: 0.7}
+links:
+  - {liaison: latch, between: [g, m], rest_m: 1.0, name: latch}
+  - {liaison: stop, between: [m, k], rest_m: 0.5, name: stop}
+  - {liaison: stop, between: [k, w], rest_m: 0.5, name: stop2}
+)yaml",
+     1},
+    {"AStiffnessThatPumps", 177.0, R"yaml(
+liaisons:
+  pump:
+    states:
+      soft: {stiffness_n_per_m: 5, exits: [{to: stiff, when: abs(elongation_m) > 0.01 and falling(abs(elongation_m))}]}
+      stiff: {stiffness_n_per_m: 10, exits: [{to: soft, when: abs(elongation_m) < 0.005}]}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 0.5}
+links:
+  - {liaison: pump, between: [g, m], rest_m: 0.5, name: pump}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"AnEscapement", 111.0, R"yaml(
+liaisons:
+  push:
+    states:
+      waiting: {exits: [{to: driving, when: elongation_m > 0 and elongation_m < 0.01 and rising(elongation_m)}]}
+      driving: {elasticity: {kind: table, at_m: [0, 0.01], force_n: [-2, -2]}, exits: [{to: waiting, when: elongation_m > 0.01}]}
+  spring: {elasticity: "5 * elongation_m + 20000 * elongation_m^3"}
+matter:
+  g: {kind: fixed, at_m: [0, 0]}
+  m: {kind: mass, mass_kg: 0.01, at_m: [0.49, 0]}
+links:
+  - {liaison: push, between: [g, m], rest_m: 0.5, name: push}
+  - {liaison: spring, between: [g, m], rest_m: 0.5, name: spring}
+)yaml"},
+    {"PairsThatSnapTogetherAndPartSofter", 355.0, R"yaml(
+liaisons:
+  snap:
+    range_m: 0.3
+    rest_m: 0.1
+    states:
+      off: {exits: [{to: on, when: time_s > 0.05}]}
+      on: {stiffness_n_per_m: 20, exits: [{to: off, when: distance_m > 0.28}]}
+  balls: {elasticity: {kind: lennard_jones, depth_j: 0.0005, diameter_m: 0.03, cut_m: 0.08}}
+matter:
+  a: {kind: points, mass_kg: 0.01, at_m: [[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0]]}
+links:
+  - {liaison: snap, within: a, name: snap}
+  - {liaison: balls, within: a, name: balls}
+)yaml",
+     3},
+    {"AClockThatThrowsABallAtAnother", 300.0, R"yaml(
+liaisons:
+  latch:
+    states:
+      off: {exits: [{to: on, when: age_s > 0.05}]}
+      on: {stiffness_n_per_m: 50, exits: [{to: gone, when: elongation_m > -0.02}]}
+      gone: {final: true}
+  balls: {elasticity: {kind: lennard_jones, depth_j: 0.0005, diameter_m: 0.03, cut_m: 0.08}}
+matter:
+  g: {kind: fixed, at_m: [-0.1, 0]}
+  a: {kind: points, mass_kg: 0.01, at_m: [[0, 0], [0.3, 0]]}
+links:
+  - {liaison: latch, between: [g, "a[0]"], rest_m: 0.3, name: latch}
+  - {liaison: balls, within: a, name: balls}
+)yaml"},
+    {"AWinch", 300.0, R"yaml(
+liaisons:
+  winch:
+    states:
+      on: {stiffness_n_per_m: 20, exits: [{to: on, when: age_s > 0.2 and elongation_m < 0, rest: rest_m + 0.1}]}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.45}
+links:
+  - {liaison: winch, between: [g, m], rest_m: 0.5, name: winch}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"AHookThatIsWoundUp", 200.0, R"yaml(
+liaisons:
+  hook:
+    states:
+      free: {exits: [{to: held, when: distance_m > 0.505, rest: here}]}
+      held: {stiffness_n_per_m: 2, exits: [{to: wound, when: age_s > 0.1, rest: 0.9}]}
+      wound: {stiffness_n_per_m: 200, final: true}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 0.3}
+links:
+  - {liaison: hook, between: [g, m], rest_m: 0.5, name: hook}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"AThresholdWhereTheForceJumps", 152.0, R"yaml(
+liaisons:
+  thr:
+    states:
+      off: {exits: [{to: on, when: elongation_m > 0.01}]}
+      on: {stiffness_n_per_m: 200, exits: [{to: off, when: elongation_m < 0.01}]}
+  stop: {elasticity: {kind: power, coefficient: 20000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: 0}
+  m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 1}
+links:
+  - {liaison: thr, between: [g, m], rest_m: 0.5, name: thr}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"AClockThatThrowsABallThroughAWall", 162.0, R"yaml(
+liaisons:
+  latch:
+    states:
+      off: {exits: [{to: on, when: time_s > 0.02}]}
+      on: {stiffness_n_per_m: 500, exits: [{to: gone, when: elongation_m > -0.01}]}
+      gone: {final: true}
+  soft: {stiffness_n_per_m: 1000, viscosity_n_s_per_m: 0.5, pulls: false, range: rest}
+matter:
+  g: {kind: fixed, at_m: [-0.1, 0]}
+  a: {kind: mass, ball: {mass_kg: 0.05, radius_m: 0.05}, at_m: [0, 0]}
+  wall: {kind: plane, at_m: [0.4, 0], normal: -x, sides: both}
+links:
+  - {liaison: latch, between: [g, a], rest_m: 0.4, name: latch}
+  - {liaison: soft, between_sets: [wall, a], name: stop}
+)yaml"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NotCertain, testing::ValuesIn(kNotCertain),
@@ -163,6 +319,61 @@ matter:
   a: {kind: mass, ball: {mass_kg: 0.05, radius_m: 0.05}, at_m: [0.05, 0]}
   wall: {kind: plane, at_m: [-0.07, 0], normal: x, sides: both}
 links: [{liaison: touch, between_sets: [wall, a], name: stop}, {liaison: thread, between: [hook, a]}]
+)yaml"},
+    {"ALatchThatTakesMoreThanItStores", 2000.0, R"yaml(
+liaisons:
+  latch:
+    states:
+      "on": {stiffness_n_per_m: 20, exits: [{to: "off", when: elongation_m > 0.05}]}
+      "off": {exits: [{to: "on", when: elongation_m < 0.02}]}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter: {g: {kind: fixed, at_m: 0}, m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 0.5}}
+links:
+  - {liaison: latch, between: [g, m], rest_m: 0.5, name: latch}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"StatesOfOneSpring", 2000.0, R"yaml(
+liaisons:
+  blink:
+    states:
+      one: {stiffness_n_per_m: 20, viscosity_n_s_per_m: 0.01, exits: [{to: two, when: age_s > 0.1}]}
+      two: {stiffness_n_per_m: 20, exits: [{to: one, when: age_s > 0.1}]}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter: {g: {kind: fixed, at_m: 0}, m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 0.5}}
+links:
+  - {liaison: blink, between: [g, m], rest_m: 0.5, name: blink}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"APlasticThread", 2000.0, R"yaml(
+liaisons:
+  lead:
+    states:
+      elastic: {stiffness_n_per_m: 20, exits: [{to: longer, when: elongation_m > 0.01}, {to: shorter, when: elongation_m < -0.01}]}
+      longer: {elasticity: {kind: table, at_m: [0], force_n: [0.2]}, exits: [{to: elastic, when: speed_m_per_s < 0, rest: rest_m + elongation_m - 0.01}]}
+      shorter: {elasticity: {kind: table, at_m: [0], force_n: [-0.2]}, exits: [{to: elastic, when: speed_m_per_s > 0, rest: rest_m + elongation_m + 0.01}]}
+  stop: {elasticity: {kind: power, coefficient: 100000, exponent: 3}}
+matter: {g: {kind: fixed, at_m: 0}, m: {kind: mass, mass_kg: 0.01, at_m: 0.5, velocity_m_per_s: 0.5}}
+links:
+  - {liaison: lead, between: [g, m], rest_m: 0.5, name: lead}
+  - {liaison: stop, between: [g, m], rest_m: 0.5, name: stop}
+)yaml",
+     1},
+    {"BallsThatStickWhenTheyTouch", 2000.0, R"yaml(
+liaisons:
+  glue:
+    range: rest
+    states:
+      apart: {exits: [{to: stuck, when: elongation_m < 0}]}
+      stuck: {stiffness_n_per_m: 500, viscosity_n_s_per_m: 0.5, exits: [{to: apart, when: elongation_m > 0.002}]}
+  stop: {elasticity: {kind: power, coefficient: 10000, exponent: 3}}
+matter:
+  g: {kind: fixed, at_m: [-1, 0]}
+  a: {kind: points, mass_kg: 0.1, radius_m: 0.05, at_m: [[0, 0], [0.3, 0]], velocity_m_per_s: [[0.1, 0], [-0.1, 0]]}
+links:
+  - {liaison: glue, within: a, name: glue}
+  - {liaison: stop, between: [g, "a[0]"], rest_m: 1, name: stop}
 )yaml"},
 };
 

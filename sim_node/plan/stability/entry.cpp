@@ -4,21 +4,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
-#include "sim_node/plan/stability/program_enclosure.h"
-#include "sim_node/plan/stability/slope.h"
+#include "sim_node/plan/stability/condition_map.h"
+#include "sim_node/plan/stability/state_potential.h"
 #include "sim_node/plan/stability/stretch.h"
 
 namespace cordis::plan {
 namespace {
 
-constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-constexpr double kAtRest = 1e-6;    // of the scale
-constexpr double kFarAway = 1e3;    // scales
-constexpr double kUnbounded = 1e9;  // [m], [m/s]
+constexpr double kBoundless = std::numeric_limits<double>::infinity();
+constexpr double kAlike = 1e-4;       // of what is stored
+constexpr double kNegligible = 1e-9;  // of the energy of the scene
 
 using Hull = std::optional<Interval>;
 
@@ -27,241 +29,457 @@ Hull hull_of(const Hull& a, const Hull& b) {
   return Interval{std::min(a->low, b->low), std::max(a->high, b->high)};
 }
 
-Hull overlap_of(const Hull& a, const Interval& b) {
-  if (!a || a->high < b.low || b.high < a->low) return {};
-  return Interval{std::max(a->low, b.low), std::min(a->high, b.high)};
+Hull overlap_of(const Interval& a, const Interval& b) {
+  if (a.high < b.low || b.high < a.low) return {};
+  return Interval{std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
-bool is_flat_power(const engine::LinkState& state) {
-  const auto* power = std::get_if<engine::Power>(&state.elasticity);
-  return power != nullptr && power->exponent > 1.0 && is_none(state.dissipation);
-}
-
-/// True if what one state stores the other stores too, at every elongation.
-bool store_alike(const engine::LinkState& a, const engine::LinkState& b) {
-  const auto* power_a = std::get_if<engine::Power>(&a.elasticity);
-  const auto* power_b = std::get_if<engine::Power>(&b.elasticity);
-  const bool alike = power_a != nullptr && power_b != nullptr &&
-                     power_a->coefficient == power_b->coefficient &&
-                     power_a->exponent == power_b->exponent;
-  return alike && a.stiffness == b.stiffness && a.pulls == b.pulls && a.pushes == b.pushes &&
-         a.force_limit == b.force_limit;
-}
-
-/// Elongations side by side, fine near 0; the first and the last one have no end.
-std::vector<Interval> cells_of(double scale) {
-  constexpr double kGrowth = 1.1;
-  std::vector<double> edges{0.0};
-  for (double edge = kAtRest * scale; edge < kFarAway * scale; edge *= kGrowth) {
-    edges.push_back(edge);
-    edges.push_back(-edge);
+/// What touches or overlaps becomes one part.
+std::vector<Interval> merged(std::vector<Interval> parts) {
+  std::ranges::sort(parts, {}, &Interval::low);
+  std::vector<Interval> all;
+  for (const Interval& part : parts) {
+    if (all.empty() || part.low > all.back().high) {
+      all.push_back(part);
+    } else {
+      all.back().high = std::max(all.back().high, part.high);
+    }
   }
-  edges.push_back(kAnywhere);
-  edges.push_back(-kAnywhere);
-  std::ranges::sort(edges);
-  std::vector<Interval> cells;
-  for (std::size_t i = 1; i < edges.size(); ++i) cells.push_back({edges[i - 1], edges[i]});
-  return cells;
+  return all;
 }
 
-/// Where a condition may hold, and where it may not.
-struct Condition {
-  std::vector<bool> may_hold;  // per cell
-  std::vector<bool> may_fail;
-};
+/// True if the elongation of a law does not say what it does, for it asks for the distance.
+bool is_of_distance(const engine::Law& law) {
+  if (const auto* expression = std::get_if<engine::Expression>(&law))
+    return asks_for(expression->program, engine::Quantity::kDistance) ||
+           asks_for(expression->program, engine::Quantity::kRestLength);
+  return std::holds_alternative<engine::LennardJones>(law) ||
+         std::holds_alternative<engine::Rings>(law);
+}
 
-class Entries {
+bool is_elastic(const engine::LinkState& state) {
+  return state.stiffness > 0.0 || !is_none(state.elasticity);
+}
+
+/// The ways through the states of a liaison, and what they bring in.
+class Ways {
  public:
-  Entries(const engine::StateMachine& machine, double rest_length, const Reach& reach)
+  Ways(const engine::StateMachine& machine, double rest_length, bool turns, double share,
+       const Reach& reach)
       : machine_(machine),
         rest_length_(rest_length),
+        turns_(turns),
         reach_(reach),
-        scale_(std::max({reach.elongation, std::abs(rest_length), 1e-3})),
-        cells_(cells_of(scale_)),
+        map_(machine, rest_length, reach),
         entered_(machine.states.size() + 1),
-        brought_(machine.states.size() + 1, 0.0) {
-    conditions_.resize(machine_.exits.size());
-    for (const engine::LinkState& state : machine_.states) {
-      for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e)
-        conditions_[e] = condition_of(state, machine_.exits[e]);
+        carried_(entered_.size()),
+        moved_(entered_.size()),
+        present_(entered_.size()),
+        lowest_(entered_.size(), 0.0),
+        brought_(entered_.size(), -kBoundless) {
+    for (const engine::LinkState& state : machine.states)
+      potentials_.emplace_back(state, rest_length, map_.cells(), share, reach);
+    entered_.back() = reach.begins;
+    brought_.back() = 0.0;
+    if (std::isfinite(reach.range)) {  // a pair that comes back into range begins again
+      const double back = reach.range - rest_length;
+      entered_[machine.start] = reach.rests_differ ? reach.begins : Interval{back, back};
+      brought_[machine.start] = 0.0;
     }
-    entered_.back() = reach_.begins;
   }
 
-  /// What each state brings in where it is entered [J].
+  /// What has been brought in where each state is entered [J]; infinite: nothing bounds it.
   std::vector<double> brought() {
-    const std::size_t rounds = entered_.size() + 2;
-    bool grows = true;
-    for (std::size_t round = 0; grows && round < rounds; ++round) {
-      grows = false;
-      for (std::size_t from = 0; from < entered_.size(); ++from) {
-        for (std::uint32_t e = in(from).first_exit; e < in(from).last_exit; ++e)
-          grows = enter(from, machine_.exits[e], conditions_[e]) || grows;
+    const std::size_t rounds = 2 * entered_.size() + 2;
+    for (std::size_t round = 0; round < rounds; ++round) {
+      for (std::size_t node = 0; node < entered_.size(); ++node) find_present(node);
+      const bool wider = take_all();
+      const std::vector<double> before = std::exchange(brought_, sums_over_ways());
+      const bool endless = std::ranges::count(brought_, kBoundless) > 0;
+      if (wider) {  // some of it may end where a state is known to go farther
+        if (endless) brought_ = before;
+        continue;
       }
+      if (endless) break;
+      bool grows = false;
+      for (std::size_t node = 0; node < entered_.size(); ++node)
+        grows = grows || brought_[node] > before[node] + kAlike * energy_at(reach_in(node));
+      if (grows) continue;
+      std::vector<double> all(brought_.begin(), brought_.end() - 1);
+      for (double& one : all) one = std::max(one, 0.0);
+      return all;
     }
-    if (grows) std::ranges::fill(brought_, kAnywhere);
-    return brought_;
+    return std::vector<double>(machine_.states.size(), kBoundless);
   }
 
  private:
+  std::size_t number(std::size_t node) const {
+    return node < machine_.states.size() ? node : machine_.start;
+  }
   /// The state of that number; the one after the last is that of the start, until it ends for the first time.
-  const engine::LinkState& in(std::size_t number) const {
-    return machine_.states[number < machine_.states.size() ? number : machine_.start];
-  }
+  const engine::LinkState& in(std::size_t node) const { return machine_.states[number(node)]; }
 
-  Condition condition_of(const engine::LinkState& state, const engine::Transition& exit) const {
-    const bool rest_moves = std::ranges::any_of(
-        machine_.exits, [](const auto& each) { return each.rest != engine::RestRule::kKeep; });
-    const auto asks = [&](engine::Quantity quantity) { return asks_for(exit.when, quantity); };
-    LinkBox box{{}, {-kUnbounded, kUnbounded}, rest_length_, reach_.mass_a, reach_.mass_b};
-    // The elongation is known even then; the distance and the rest length are not.
-    box.rest_moves = (rest_moves || reach_.rests_differ) &&
-                     (asks(engine::Quantity::kDistance) || asks(engine::Quantity::kRestLength));
-    const bool has_force = state.stiffness > 0.0 || state.viscosity > 0.0 ||
-                           !is_none(state.elasticity) || !is_none(state.dissipation);
-    if (!has_force) box.force = {};
-    const bool of_network = asks_for_variable(exit.when);  // it may come true anywhere
-    Condition condition;
-    for (const Interval& cell : cells_) {
-      box.distance = {std::max(cell.low, -kUnbounded) + rest_length_,
-                      std::min(cell.high, kUnbounded) + rest_length_};
-      if (box.rest_moves) box.distance = {-kUnbounded, kUnbounded};
-      const Interval holds = of_network ? Interval{0.0, 1.0} : values_of(exit.when, box);
-      condition.may_hold.push_back(!(holds.low == 0.0 && holds.high == 0.0));
-      condition.may_fail.push_back(!(holds.low > 0.0 || holds.high < 0.0));
-    }
-    return condition;
-  }
-
-  Reach reach_in(std::size_t state) const {
+  Reach reach_in(std::size_t node) const {
     Reach reach = reach_;
-    reach.brought += brought_[state];
+    reach.brought += std::max(brought_[node], 0.0);
     return reach;
   }
 
-  /// Wherever a state may be.
-  Interval present(std::size_t state) const {
-    const Interval by_law = elongations_within(in(state), rest_length_, reach_in(state));
-    return *hull_of(entered_[state], by_law);
+  /// True if an exit changes nothing.
+  bool is_idle(std::size_t node, const engine::Transition& exit) const {
+    return exit.rest == engine::RestRule::kKeep && exit.target == number(node);
   }
 
-  /// How far a step may go in a state: no farther than the energy stretches a power that is certified.
-  double step_in(std::size_t state) const {
-    Reach free = reach_in(state);
+  /// True if nothing surely ends a state in a cell. The first exit that holds is taken, also one that changes nothing.
+  /// @param may_fail  of Holding, on the way out of where the state begins
+  bool may_stay(std::size_t node, std::size_t cell, std::vector<bool> Holding::*may_fail) const {
+    for (std::uint32_t e = in(node).first_exit; e < in(node).last_exit; ++e) {
+      if (is_idle(node, machine_.exits[e]) && map_.of_exit(e).may_hold[cell]) return true;
+      if (!(map_.of_exit(e).*may_fail)[cell]) return false;
+    }
+    return true;
+  }
+
+  /// Where a state may be in its last step, if an exit surely holds where it begins. The start is looked at before it
+  /// moves.
+  Hull moved_in(std::size_t node) const {
+    if (node == machine_.states.size()) return {};
+    const std::vector<Interval>& cells = map_.cells();
+    const double slack = ConditionMap::kAtRest * map_.scale();
+    std::vector<Interval> ends;
+    bool may_go_on = false;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Hull began = overlap_of(*entered_[node], cells[i]);
+      if (!began) continue;
+      if (may_stay(node, i, &Holding::may_fail)) {
+        may_go_on = true;
+      } else {
+        ends.push_back(*began);
+      }
+    }
+    if (may_go_on) {  // it only touches these cells
+      std::erase_if(ends, [&](const Interval& part) { return part.high - part.low <= slack; });
+    }
+    if (ends.empty()) return {};
+    const double step = step_in(node);
+    return overlap_of({ends.front().low - step, ends.back().high + step}, *carried_[node]);
+  }
+
+  /// Wherever a state may be: as far as the energy carries it, and no exit surely ends it on the way.
+  void find_present(std::size_t node) {
+    if (!entered_[node]) return;
+    const std::vector<Interval>& cells = map_.cells();
+    const Interval began = *entered_[node];
+    Interval all = *hull_of(began, elongations_within(in(node), rest_length_, reach_in(node)));
+    if (turns_ && map_.knows_rest(number(node)))
+      all.low = std::min(std::max(all.low, -rest_length_), began.low);
+    carried_[node] = all;
+    for (const Interval& cell : cells) {
+      const auto i = static_cast<std::size_t>(&cell - cells.data());
+      if (cell.low >= began.high && !may_stay(node, i, &Holding::may_fail_lengthening)) {
+        all.high = std::min(all.high, cell.low);
+        break;
+      }
+    }
+    for (std::size_t i = cells.size(); i-- > 0;) {
+      if (cells[i].high > began.low || may_stay(node, i, &Holding::may_fail_shortening)) continue;
+      all.low = std::max(all.low, cells[i].high);
+      break;
+    }
+    if (number(node) == machine_.start &&
+        std::isfinite(reach_.range))  // beyond it no pair is in that state
+      all.high = std::max(began.high, std::min(all.high, reach_.range - rest_length_));
+    moved_[node] = moved_in(node);
+    present_[node] = *hull_of(all, moved_[node]);
+    const bool is_known = map_.knows_rest(number(node)) || !is_of_distance(in(node).elasticity);
+    lowest_[node] = is_known ? potentials_[number(node)].least(*present_[node]) : -kBoundless;
+  }
+
+  /// Where an exit comes true.
+  struct Place {
+    Interval part;
+    bool is_at_threshold = false;  // beyond it the exit surely holds, and before it surely not
+  };
+
+  /// True if beyond a cell an exit surely holds, and before it surely not.
+  static bool is_threshold(const Holding& exit, std::size_t cell) {
+    const auto surely_holds = [&](std::size_t i) { return !exit.may_fail[i]; };
+    const auto surely_fails = [&](std::size_t i) { return !exit.may_hold[i]; };
+    if (cell == 0 || cell + 1 == exit.may_hold.size()) return false;
+    const std::size_t before = cell - 1;
+    const std::size_t after = cell + 1;
+    if (surely_holds(cell)) return surely_fails(before) || surely_fails(after);
+    return (surely_fails(before) && surely_holds(after)) ||
+           (surely_holds(before) && surely_fails(after));
+  }
+
+  /// It held nowhere in the sample before, or the state began there.
+  std::vector<Place> comes_true(std::size_t node, const Holding& exit) const {
+    const std::vector<Interval>& cells = map_.cells();
+    const Interval& where = *present_[node];
+    std::vector<bool> before(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      before[i] = (exit.may_fail[i] && overlap_of(where, cells[i])) ||
+                  overlap_of(*entered_[node], cells[i]) ||
+                  (moved_[node] && overlap_of(*moved_[node], cells[i]));
+    }
+    std::vector<Place> found;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (!exit.may_hold[i]) continue;
+      const auto add = [&](const Interval& part) {
+        if (const Hull here = overlap_of(where, part))
+          found.push_back({*here, is_threshold(exit, i)});
+      };
+      if (before[i]) {
+        add(cells[i]);
+      } else {
+        if (i > 0 && before[i - 1]) add({cells[i].low, cells[i].low});
+        if (i + 1 < cells.size() && before[i + 1]) add({cells[i].high, cells[i].high});
+      }
+    }
+    return found;
+  }
+
+  /// How far a step may go in a state [m]: at most as fast as all energy makes it, for the longest step of the stiffest
+  /// state; no farther than the energy stretches a power that is certified.
+  double step_in(std::size_t node) const {
+    Reach free = reach_in(node);
     free.held = false;
-    double step = kAnywhere;
+    double stiffest = 0.0;
+    double step = kBoundless;
     for (const engine::LinkState& each : machine_.states) {
-      if (!is_flat_power(each)) continue;
+      stiffest = std::max(stiffest, each.stiffness);
+      if (!std::holds_alternative<engine::Power>(each.elasticity)) continue;
       const Stretch stretch = stretch_within(each, rest_length_, /*turns=*/false, free);
       step = std::min(step, std::max(stretch.longer, stretch.shorter));
     }
-    return step;
+    if (reach_.inverse_mass == 0.0) return 0.0;
+    const double longest =
+        std::min(reach_.longest_step, 2.0 / std::sqrt(stiffest * reach_.inverse_mass));
+    return std::min(step, relative_speed(in(node), reach_in(node)) * longest);
   }
 
-  /// Where a condition comes true in a state. It held nowhere in the sample before, or the state began there.
-  Hull comes_true(std::size_t state, const Condition& condition) const {
-    const Interval where = present(state);
-    std::vector<bool> before(cells_.size());
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      before[i] = (condition.may_fail[i] && overlap_of(where, cells_[i])) ||
-                  overlap_of(entered_[state], cells_[i]);
+  /// The elongation after a change to an expression; none: it may be any.
+  std::optional<double> renewed(const engine::Transition& exit, bool knows_rest,
+                                double elongation) const {
+    using engine::Quantity;
+    for (const Quantity each :
+         {Quantity::kSpeed, Quantity::kSpeedX, Quantity::kSpeedY, Quantity::kSpeedZ,
+          Quantity::kSlip, Quantity::kForce, Quantity::kImpulse, Quantity::kAge, Quantity::kSlid}) {
+      if (asks_for(exit.rest_length, each)) return {};
     }
-    Hull found;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (!condition.may_hold[i]) continue;
-      const Interval& cell = cells_[i];
-      if (before[i]) found = hull_of(found, overlap_of(where, cell));
-      if (i > 0 && before[i - 1]) found = hull_of(found, Interval{cell.low, cell.low});
-      if (i + 1 < cells_.size() && before[i + 1])
-        found = hull_of(found, Interval{cell.high, cell.high});
-    }
-    return found;
-  }
-
-  /// Likewise a step farther, as far as the condition holds there and the state goes.
-  Hull a_step_beyond(std::size_t state, const Interval& where, const Condition& condition) const {
-    const double step = step_in(state);
-    const Interval all = present(state);
-    const Interval wider{std::max(where.low - step, all.low),
-                         std::min(where.high + step, all.high)};
-    Hull found;
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      if (condition.may_hold[i]) found = hull_of(found, overlap_of(wider, cells_[i]));
-    }
-    return found;
-  }
-
-  /// The most that a state stores somewhere [J]; infinite where that grows without an end.
-  double max_stored(const engine::LinkState& state, const Interval& where) const {
-    constexpr int kSamples = 64;
-    const auto stored = [&](double e) {
-      return stored_in(state, {rest_length_ + e, e, 0.0, reach_.mass_a.high, reach_.mass_b.high});
+    if (asks_for_variable(exit.rest_length) || has_edge(exit.rest_length)) return {};
+    const auto after = [&](double rest) {
+      engine::LinkQuantities now{};
+      const auto set = [&](Quantity quantity, double value) {
+        now[static_cast<std::size_t>(quantity)] = value;
+      };
+      set(Quantity::kDistance, rest + elongation);
+      set(Quantity::kElongation, elongation);
+      set(Quantity::kRestLength, rest);
+      set(Quantity::kMassA, reach_.mass_a.high);
+      set(Quantity::kMassB, reach_.mass_b.high);
+      return rest + elongation - value_of(exit.rest_length, now);
     };
-    const double far = kFarAway * scale_;
-    const double low = std::max(where.low, -far);
-    const double high = std::min(where.high, far);
-    if ((where.low < low && stored(low) > 0.0) || (where.high > high && stored(high) > 0.0))
-      return kAnywhere;
-    double most = 0.0;
-    for (int i = 0; i <= kSamples; ++i)
-      most = std::max(most, stored(low + (high - low) * i / kSamples));
+    const double here = after(rest_length_);
+    if (!std::isfinite(here)) return {};
+    if (knows_rest) return here;
+    const double scale = map_.scale();
+    for (const double other :
+         {0.0, 2.0 * scale, -3.0 * scale}) {  // does it move along with the rest?
+      if (!(std::abs(after(rest_length_ + other) - here) <= 1e-9 * scale)) return {};
+    }
+    return here;
+  }
+
+  /// What a change brings in at an elongation [J], and to which it leads.
+  struct Change {
+    double brings = 0.0;
+    Hull leads_to;
+  };
+
+  Change change_at(std::size_t node, const engine::Transition& exit, double elongation) const {
+    const StatePotential& before = potentials_[number(node)];
+    const std::size_t to = exit.target;
+    double next = elongation;
+    if (exit.rest == engine::RestRule::kHere) next = 0.0;
+    if (exit.rest == engine::RestRule::kExpression) {
+      const std::optional<double> found = renewed(exit, map_.knows_rest(number(node)), elongation);
+      if (!found) return {is_elastic(machine_.states[to]) ? kBoundless : 0.0, kAnyNumber};
+      next = *found;
+    }
+    // Where the target was not entered so far, what it gives is found in the next round.
+    const double lowest_after =
+        present_[to] ? std::min(lowest_[to], potentials_[to].at(next)) : potentials_[to].at(next);
+    const double stored = before.at(elongation) - lowest_[node];
+    const double gives = potentials_[to].at(next) - lowest_after;
+    if (std::isinf(lowest_after))
+      return {std::isinf(lowest_[node]) && is_alike(number(node), to) ? 0.0 : kBoundless,
+              Interval{next, next}};
+    return {gives - stored - kAlike * (std::abs(gives) + std::min(stored, 1e300)),
+            Interval{next, next}};
+  }
+
+  /// True if two states store the same wherever they are.
+  bool is_alike(std::size_t a, std::size_t b) const {
+    const std::vector<double>& edges = potentials_[a].edges();
+    return std::ranges::all_of(edges, [&](double e) {
+      const double one = potentials_[a].at(e);
+      const double other = potentials_[b].at(e);
+      return std::abs(one - other) <= kAlike * std::abs(one);
+    });
+  }
+
+  Change change_within(std::size_t node, const engine::Transition& exit,
+                       const Interval& part) const {
+    const std::vector<double>& edges = potentials_[number(node)].edges();
+    Change all{-kBoundless, {}};
+    const auto take_in = [&](double elongation) {
+      const Change one = change_at(node, exit, elongation);
+      all.brings = std::max(all.brings, one.brings);
+      all.leads_to = hull_of(all.leads_to, one.leads_to);
+      return one.brings;
+    };
+    const auto ends_far = [&](double far, double nearer) {
+      const double there = take_in(far);
+      if (there > change_at(node, exit, nearer).brings + kAlike * std::abs(there) && there > 0.0)
+        all.brings = kBoundless;
+    };
+    const std::size_t last = edges.size() - 1;
+    if (part.low < edges.front()) ends_far(edges[0], edges[1]);
+    if (part.high > edges.back()) ends_far(edges[last], edges[last - 1]);
+    take_in(std::clamp(part.low, edges.front(), edges.back()));
+    take_in(std::clamp(part.high, edges.front(), edges.back()));
+    for (const double edge : edges) {
+      if (edge > part.low && edge < part.high) take_in(edge);
+    }
+    const bool keeps = exit.rest == engine::RestRule::kKeep;
+    if (keeps) all.leads_to = hull_of(all.leads_to, part);
+    return all;
+  }
+
+  /// Where it comes true, and a step beyond where a change brings in more or less from place to place, for the force
+  /// jumps.
+  std::vector<Interval> overshot(std::size_t node, const engine::Transition& exit,
+                                 const Holding& holding) const {
+    constexpr double kNoJump = 0.01;
+    constexpr double kNear = 1e-3;  // steps
+    const double step = step_in(node);
+    const auto jump = [&](double elongation) {
+      const double before = change_at(node, exit, elongation - kNear * step).brings;
+      const double after = change_at(node, exit, elongation + kNear * step).brings;
+      return std::isfinite(after - before) ? std::abs(after - before) : 0.0;
+    };
+    std::vector<Interval> all;
+    for (const auto& [part, is_at_threshold] : comes_true(node, holding)) {
+      all.push_back(part);
+      if (!is_at_threshold) continue;
+      const Interval wider{part.low - step, part.high + step};
+      if (!std::isfinite(step)) {
+        all.push_back(kAnyNumber);
+        continue;
+      }
+      const double here = std::max(jump(part.low), jump(part.high));
+      if (here <= kNoJump * std::max(jump(wider.low), jump(wider.high))) continue;
+      for (std::size_t i = 0; i < map_.cells().size(); ++i) {
+        if (!holding.may_hold[i]) continue;
+        const Hull more = overlap_of(wider, map_.cells()[i]);
+        const Hull carried = more ? overlap_of(*more, *carried_[node]) : more;
+        if (carried) all.push_back(*carried);
+      }
+    }
+    return merged(std::move(all));
+  }
+
+  /// Finds what every change brings in now. @return true if a state is entered elsewhere than known so far
+  bool take_all() {
+    brings_.clear();
+    bool wider = false;
+    for (std::size_t node = 0; node < entered_.size(); ++node) {
+      if (!present_[node]) continue;
+      for (std::uint32_t e = in(node).first_exit; e < in(node).last_exit; ++e)
+        wider = take(node, e) || wider;
+    }
+    return wider;
+  }
+
+  bool take(std::size_t node, std::uint32_t e) {
+    const engine::Transition& exit = machine_.exits[e];
+    const std::size_t to = exit.target;
+    if (is_idle(node, exit)) return false;
+    const Holding& holding = map_.of_exit(e);
+    const std::vector<Interval> where = overshot(node, exit, holding);
+    Change all{-kBoundless, {}};
+    for (const Interval& part : where) {
+      const Change one = change_within(node, exit, part);
+      all.brings = std::max(all.brings, one.brings);
+      all.leads_to = hull_of(all.leads_to, one.leads_to);
+    }
+    if (!all.leads_to) return false;
+    brings_.push_back({node, to, all.brings - kNegligible * energy_at(reach_)});
+    const double slack = ConditionMap::kAtRest * map_.scale();
+    const Hull hull = hull_of(entered_[to], all.leads_to);
+    if (entered_[to] && hull->low >= entered_[to]->low - slack &&
+        hull->high <= entered_[to]->high + slack)
+      return false;
+    entered_[to] = hull;
+    return true;
+  }
+
+  /// The largest sum of what changes bring in, on any way to each state [J]; infinite beyond rounds that bring in more
+  /// each time.
+  std::vector<double> sums_over_ways() const {
+    std::vector<double> most(entered_.size(), -kBoundless);
+    most.back() = 0.0;
+    if (std::isfinite(reach_.range)) most[machine_.start] = 0.0;
+    for (std::size_t round = 0; round <= entered_.size(); ++round) {
+      const bool is_last = round == entered_.size();
+      for (const Brings& change : brings_) {
+        const double sum = most[change.from] + change.energy;
+        if (sum > most[change.to]) most[change.to] = is_last ? kBoundless : sum;
+      }
+    }
     return most;
   }
 
-  /// @return true if the target is entered elsewhere than known so far, or with more energy
-  bool enter(std::size_t from, const engine::Transition& exit, const Condition& condition) {
-    const std::size_t to = exit.target;
-    const bool keeps = exit.rest == engine::RestRule::kKeep;
-    if (!entered_[from] || (keeps && &in(from) == &in(to))) return false;
-    Hull where;
-    double brought = brought_[from];
-    if (exit.rest == engine::RestRule::kHere) {
-      where = Interval{};
-    } else if (exit.rest == engine::RestRule::kExpression) {
-      where = kAnyNumber;
-      brought = kAnywhere;
-    } else {
-      where = comes_true(from, condition);
-      if (!where) return false;
-      const bool is_at_rest = std::max(-where->low, where->high) <= 1.5 * kAtRest * scale_;
-      where = a_step_beyond(from, *where, condition);
-      if (!is_at_rest && !store_alike(in(from), in(to))) brought += max_stored(in(to), *where);
-    }
-    constexpr double kMore = 1e-3;
-    const Hull all = hull_of(entered_[to], where);
-    const double slack =
-        kMore * (entered_[to] ? entered_[to]->high - entered_[to]->low : 0.0) + kAtRest * scale_;
-    const bool wider = !entered_[to] || all->low < entered_[to]->low - slack ||
-                       all->high > entered_[to]->high + slack;
-    const bool stronger = brought > brought_[to] + kMore * (brought_[to] + energy_at(reach_));
-    entered_[to] = all;
-    brought_[to] = std::max(brought_[to], brought);
-    return wider || stronger;
-  }
+  /// What one change brings in at most.
+  struct Brings {
+    std::size_t from = 0;
+    std::size_t to = 0;
+    double energy = 0.0;  // [J]
+  };
 
   const engine::StateMachine& machine_;
   double rest_length_;
+  bool turns_;
   const Reach& reach_;
-  double scale_;
-  std::vector<Interval> cells_;
-  std::vector<Condition> conditions_;  // of all exits
-  std::vector<Hull> entered_;          // by in(): elongations where it begins; none: it never does
-  std::vector<double> brought_;        // by in() [J]
+  ConditionMap map_;
+  std::vector<StatePotential> potentials_;
+  std::vector<Hull> entered_;    // by in(): elongations where it begins; none: it never does
+  std::vector<Hull> carried_;    // likewise how far the energy carries it
+  std::vector<Hull> moved_;      // likewise where its last step may take it, see moved_in()
+  std::vector<Hull> present_;    // likewise where it may be until an exit surely ends it
+  std::vector<double> lowest_;   // likewise its least potential there [J]
+  std::vector<double> brought_;  // likewise [J]; -infinity: it is not entered
+  std::vector<Brings> brings_;   // of all changes that may come
 };
 
 }  // namespace
 
 std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double rest_length,
-                              const Reach& reach) {
+                              bool turns, const Reach& reach) {
   std::vector<Entry> entries(state_machine.states.size());
-  bool asks = false;
-  for (const engine::Transition& exit : state_machine.exits) {
+  for (const engine::Transition& exit : state_machine.exits)
     entries[exit.target].by_a_change = true;
-    asks = asks || is_flat_power(state_machine.states[exit.target]);
+  if (std::ranges::none_of(entries, [](const Entry& entry) { return entry.by_a_change; }))
+    return entries;
+  for (const double share : {0.0, 1.0}) {
+    const std::vector<double> brought =
+        Ways(state_machine, rest_length, turns, share, reach).brought();
+    for (std::size_t s = 0; s < entries.size(); ++s)
+      entries[s].brought = std::max(entries[s].brought, brought[s]);
+    if (reach.mass_a.low == reach.mass_a.high && reach.mass_b.low == reach.mass_b.high) break;
   }
-  if (!asks) return entries;
-  const std::vector<double> brought = Entries(state_machine, rest_length, reach).brought();
-  for (std::size_t s = 0; s < entries.size(); ++s) entries[s].brought = brought[s];
   return entries;
 }
 

@@ -1,4 +1,4 @@
-// sim_node/plan/stability/entry.h -- how stretched a state may be where an exit enters it.
+// sim_node/plan/stability/entry.h -- what the changes of state of a liaison bring in.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,20 @@ namespace cordis::plan {
 /// How a state may begin.
 struct Entry {
   bool by_a_change = false;  ///< an exit leads to it
-  /// The most energy that its law has there, beyond what the scene has [J]; infinite: it may begin anywhere.
+  /// The most energy that the changes of state on a way to it bring into the scene [J], 0 or more; infinite: nothing
+  /// bounds it.
   double brought = 0.0;
 };
 
-/// One of each state. An exit that keeps the rest length leads to where its condition begins to hold, or to wherever the
-/// state before may be: as far as its own law lets it, or as far as that was entered. Only the first entry of
-/// each state counts: what brings in more in every round may begin anywhere. Found where a power asks for it; 0 elsewhere.
-/// O(states^2 samples).
+/// One of each state. A change brings in what the new state may give where it begins, less what the state before
+/// still had there. A state gives what its potential may fall by, as far as it goes. An exit that keeps the rest
+/// length leads to where its condition comes true, by intervals over the elongation at any speed, or to wherever
+/// the state before may be. States that enter each other with more energy in every round bring in energy without
+/// an end. Where the force jumps at a threshold, it counts a step farther.
+/// O(states^2 samples), some thousand enclosures for each exit.
+/// @param rest_length  at the start [m]; of a set, that of its nearest pair
+/// @param turns        its distance has no sign, and so it is not shorter than to length 0
 std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double rest_length,
-                              const Reach& reach);
+                              bool turns, const Reach& reach);
 
 }  // namespace cordis::plan

@@ -80,6 +80,7 @@ class Way {
     constexpr int kEven = 400;
     std::vector<double> all;
     for (int i = 1; i <= kEven; ++i) all.push_back(from + (to - from) * i / kEven);
+    for (double share = 1.0; share > 1e-6; share *= 0.9) all.push_back(from + (to - from) * share);
     const bool approaches = std::abs(to) < std::abs(from);  // laws of the distance are steep near 0
     for (double share = 0.97; approaches && share > 1e-9; share *= 0.97) {
       all.push_back(to + (from - to) * share);

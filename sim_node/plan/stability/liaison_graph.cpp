@@ -42,6 +42,7 @@ double slope_beyond(const engine::LennardJones& law, double touch, double range)
 
 constexpr const char* kFed = "its parameter changes and does work without an end";
 constexpr const char* kFallsWithoutEnd = "it brings in energy without an end";
+constexpr const char* kSwitches = "nothing bounds the energy that its changes of state bring in";
 constexpr const char* kFallsOnItself =
     "it brings in energy without an end, and a law without a largest slope may take it";
 constexpr const char* kStartsTooStrong =
@@ -562,7 +563,8 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
   const Reach& reach = graph.reach;
   index = 0;
   SlopesOfLinks slopes(network, reach);
-  const bool knows_all_energy = network.sets.empty() || reach.counts_sets;
+  const bool knows_all_energy =
+      (network.sets.empty() || reach.counts_sets) && !reach.switched.has_value();
   for (const engine::StateLink& link : network.state_links) {
     Slope slope = slopes.slope_of(link);
     const engine::StateMachine& machine = network.state_machines[link.state_machine];
@@ -608,6 +610,8 @@ LiaisonGraph graph_of(const NetworkDescription& network, double reach_factor) {
                          {},
                          graph.takes_energy()};
   }
+  if (reach.switched && reach.counts_sets && !graph.bounded && !graph.uncertainty)
+    graph.uncertainty = {*reach.switched, kSwitches + where, {}, graph.takes_energy()};
   if (reach.fed && !graph.bounded && !graph.uncertainty) {
     graph.uncertainty = {*reach.fed, kFed + where, unbounded_variables(network, *reach.fed, reach),
                          graph.takes_energy()};

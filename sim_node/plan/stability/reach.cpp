@@ -19,6 +19,7 @@
 #include "sim_node/plan/stability/slope.h"
 #include "sim_node/plan/stability/start_pairs.h"
 #include "sim_node/plan/stability/start_point.h"
+#include "sim_node/plan/stability/switching.h"
 
 namespace cordis::plan {
 namespace {
@@ -155,6 +156,24 @@ std::optional<engine::LiaisonId> fed_beside_links(const engine::NetworkDescripti
   if (const auto fed = first_of(network.maxwell_links, LiaisonKind::kMaxwellLink)) return fed;
   if (const auto fed = first_of(network.bends, LiaisonKind::kBend)) return fed;
   return first_of(network.sets, LiaisonKind::kSet);
+}
+
+/// A step above which a spring alone is unstable [s]: the stiffest for its masses, or the step of the network where
+/// there is none.
+double longest_step_of(const engine::NetworkDescription& network) {
+  double highest = 0.0;  // K / m [1/s^2]
+  const auto take = [&](std::uint32_t mat_a, std::uint32_t mat_b, double stiffness) {
+    for (const std::uint32_t mat : {mat_a, mat_b}) {
+      if (network.mats[mat].kind == engine::MatKind::kMass)
+        highest = std::max(highest, stiffness / network.mats[mat].mass);
+    }
+  };
+  for (const engine::Link& link : network.links) take(link.mat_a, link.mat_b, link.stiffness);
+  for (const engine::StateLink& link : network.state_links) {
+    for (const engine::LinkState& state : network.state_machines[link.state_machine].states)
+      take(link.mat_a, link.mat_b, state.stiffness);
+  }
+  return highest > 0.0 ? 2.0 / std::sqrt(highest) : network.step;
 }
 
 /// The speed at which a state holds a force that lasts, by its viscosity [m/s].
@@ -311,11 +330,6 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   reach.force = driven + weight_of(network);
   const double all_stored = std::accumulate(stored.begin(), stored.end(), 0.0);
   reach.brought = factor * (energy_brought(network) + all_stored) + reach.pushed;
-  std::vector<EnergyShare> shares = energy_shares(network, stored, port_speed);
-  for (EnergyShare& share : shares) {
-    share = {factor * share.of_bodies, factor * share.stored + reach.pushed, factor * share.struck};
-  }
-  reach.shares = std::make_shared<const std::vector<EnergyShare>>(std::move(shares));
   reach.counts_sets = needs_energy(network);
   for (const engine::SetLiaison& set : network.sets) {
     if (!reach.counts_sets) break;
@@ -326,6 +340,17 @@ Reach reach_of(const engine::NetworkDescription& network, double factor) {
   }
   reach.energy *= factor;
   reach.speed *= std::sqrt(factor);
+  reach.longest_step = longest_step_of(network);
+  const Switching switching = switching_of(network, reach);
+  reach.switched = switching.endless;
+  reach.brought += switching.all;
+  for (std::size_t mat = 0; mat < stored.size(); ++mat)
+    stored[mat] += switching.at_mats[mat] / factor;
+  std::vector<EnergyShare> shares = energy_shares(network, stored, port_speed);
+  for (EnergyShare& share : shares) {
+    share = {factor * share.of_bodies, factor * share.stored + reach.pushed, factor * share.struck};
+  }
+  reach.shares = std::make_shared<const std::vector<EnergyShare>>(std::move(shares));
   return reach;
 }
 

@@ -19,7 +19,7 @@ struct Reach {
   double elongation = 0.0;  ///< elongation of a link, either way [m]
   double speed = 0.0;       ///< speed of MATs [m/s]
   double energy = 0.0;      ///< energy with which two MATs approach each other, ports apart [J]
-  /// Kinetic and stored at the start, by falling, by laws whose potential falls, and by `pushed` [J].
+  /// Kinetic and stored at the start, by falling, by laws whose potential falls, by changes of state, and by `pushed` [J].
   double brought = 0.0;
   double pushed = 0.0;    ///< by driven forces through the scene [J]
   double in_pairs = 0.0;  ///< the part that the pairs of sets store [J]; 0 unless `counts_sets`
@@ -35,6 +35,8 @@ struct Reach {
   double force = 0.0;         ///< force of all drives and all weights [N]
   double driven = 0.0;        ///< force of all drives alone [N]
   double inverse_mass = 0.0;  ///< the largest 1 / m of each end, added up [1/kg]
+  double longest_step =
+      std::numeric_limits<double>::infinity();  ///< no step above it is certified [s]
   /// The distance from which on the liaison does nothing [m].
   double range = std::numeric_limits<double>::infinity();
   /// The first link with states whose potential falls without an end; what it brings in is not in
@@ -42,6 +44,8 @@ struct Reach {
   std::optional<std::uint32_t> endless = {};
   /// The first liaison whose elasticity follows a variable: nothing bounds what that brings in.
   std::optional<engine::LiaisonId> fed = {};
+  /// A liaison of which nothing bounds what its changes of state bring in; that is not in `brought`.
+  std::optional<engine::LiaisonId> switched = {};
   /// What each variable of the network lies within; null: any number.
   std::shared_ptr<const std::vector<Interval>> variables = {};
   /// Elongations at which a liaison begins in the state of its start [m].

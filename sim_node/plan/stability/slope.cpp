@@ -347,23 +347,40 @@ Slope with_friction(const Slope& slope, const engine::StateMachine& state_machin
   return largest;
 }
 
+namespace {
+
+bool is_flat_power(const engine::LinkState& state) {
+  const auto* power = std::get_if<engine::Power>(&state.elasticity);
+  return power != nullptr && power->exponent >= 1.0 && is_none(state.dissipation);
+}
+
+/// Without what they bring in where no state is a power that is flat at its rest.
+std::vector<Entry> entries_where_powers_ask(const engine::StateMachine& state_machine,
+                                            double rest_length, bool turns, const Reach& reach) {
+  if (std::ranges::any_of(state_machine.states, is_flat_power))
+    return entries_of(state_machine, rest_length, turns, reach);
+  std::vector<Entry> entries(state_machine.states.size());
+  for (const engine::Transition& exit : state_machine.exits)
+    entries[exit.target].by_a_change = true;
+  return entries;
+}
+
+}  // namespace
+
 Slope largest_slope(const engine::StateMachine& state_machine, double rest_length, int dimension,
                     const Reach& reach) {
   Slope largest;
-  const std::vector<Entry> entries = entries_of(state_machine, rest_length, reach);
+  const std::vector<Entry> entries =
+      entries_where_powers_ask(state_machine, rest_length, dimension > 1, reach);
   const bool may_be_negative = dimension > 1 && may_make_rest_negative(state_machine, reach);
   const double scale = std::max({reach.elongation, std::abs(rest_length), 1e-6});
   for (std::size_t s = 0; s < state_machine.states.size(); ++s) {
     const engine::LinkState& state = state_machine.states[s];
-    // A power is flat at its rest: what it has where it is entered is energy, as what it is struck with.
-    const auto* power = std::get_if<engine::Power>(&state.elasticity);
-    const bool is_flat_at_rest =
-        power != nullptr && power->exponent >= 1.0 && is_none(state.dissipation);
+    // A power is flat at its rest: what it has where it is entered is energy, and in that of the reach.
     const Entry& entry = entries[s];
-    const bool is_entered = entry.by_a_change && (!is_flat_at_rest || std::isinf(entry.brought));
-    Reach here = reach;
-    if (is_flat_at_rest && !is_entered) here.brought += entry.brought;
-    Slope slope = slope_of(state, rest_length, dimension > 1, here);
+    const bool is_entered =
+        entry.by_a_change && (!is_flat_power(state) || std::isinf(entry.brought));
+    Slope slope = slope_of(state, rest_length, dimension > 1, reach);
     if (!slope.bounded && is_entered && slope.uncertainty == nullptr)
       slope.uncertainty = kBeginsAnywhere;
     if (may_be_negative && entry.by_a_change && slope.uncertainty == nullptr &&
@@ -376,12 +393,12 @@ Slope largest_slope(const engine::StateMachine& state_machine, double rest_lengt
         std::min(largest.touch_damping, touch_damping(state, slope.stiffness, reach));
     const auto fall_within = [&](Interval within) {
       if (dimension > 1) within.low = std::max(within.low, -rest_length);  // ends are never nearer
-      return slope_fall(state, rest_length, within, slope.stiffness, here);
+      return slope_fall(state, rest_length, within, slope.stiffness, reach);
     };
     const double fall_anywhere = fall_within(kAnyNumber);
     const double fall = entry.by_a_change || fall_anywhere == 0.0
                             ? fall_anywhere
-                            : fall_within(elongations_within(state, rest_length, here));
+                            : fall_within(elongations_within(state, rest_length, reach));
     largest.fall_anywhere = std::max(largest.fall_anywhere, fall_anywhere);
     largest.fall = std::max(largest.fall, fall);
     largest.damping_ratio = std::max(largest.damping_ratio, slope.damping_ratio);
@@ -462,9 +479,10 @@ Slope largest_slope_at_surfaces(const engine::StateMachine& state_machine, doubl
   for (const engine::LinkState& state : state_machine.states) {
     const Flip flip = flip_of(state, rest_length, flips_at, rest_moves, reach);
     if (flip.pulls) slope.uncertainty = kPullsWhereNormalFlips;
-    if (flip.barrier >= kNeverPassed * energy) continue;
+    const bool is_bounded = !reach.switched || std::isinf(flip.barrier);
+    if (is_bounded && flip.barrier >= kNeverPassed * energy) continue;
     slope.bounded = false;
-    slope.passing = std::max(slope.passing, energy / flip.barrier);
+    slope.passing = std::max({slope.passing, energy / flip.barrier, 1.0 / kNeverPassed});
     slope.barrier = std::min(slope.barrier, flip.barrier);
     if (flip.barrier <= energy && slope.uncertainty == nullptr) slope.uncertainty = kPassesSurface;
   }

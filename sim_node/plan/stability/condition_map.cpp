@@ -1,0 +1,175 @@
+// sim_node/plan/stability/condition_map.cpp
+#include "sim_node/plan/stability/condition_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "sim_node/plan/stability/law_energy.h"
+#include "sim_node/plan/stability/program_enclosure.h"
+
+namespace cordis::plan {
+namespace {
+
+constexpr double kInfinitelyFar = std::numeric_limits<double>::infinity();
+constexpr double kWidest = 1e9;         // [m], [m/s]
+constexpr double kBarelyMoving = 1e-9;  // [m/s]
+constexpr Interval kAnySpeed{-kWidest, kWidest};
+
+std::vector<Interval> cells_between(std::vector<double> edges) {
+  std::ranges::sort(edges);
+  std::vector<Interval> cells;
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    if (edges[i] > edges[i - 1]) cells.push_back({edges[i - 1], edges[i]});
+  }
+  return cells;
+}
+
+std::vector<double> edges_of(double scale) {
+  constexpr double kGrowth = 1.3;
+  std::vector<double> edges{0.0, kInfinitelyFar, -kInfinitelyFar};
+  for (double edge = ConditionMap::kAtRest * scale; edge < ConditionMap::kFarAway * scale;
+       edge *= kGrowth) {
+    edges.push_back(edge);
+    edges.push_back(-edge);
+  }
+  return edges;
+}
+
+bool surely_holds(const Interval& truth) {
+  return truth.low > 0.0 || truth.high < 0.0;
+}
+
+bool surely_fails(const Interval& truth) {
+  return truth.low == 0.0 && truth.high == 0.0;
+}
+
+/// What a state pulled with in the step before, at elongations in a cell [N].
+Interval force_in(const engine::LinkState& state, double rest_length, const Interval& cell,
+                  const Reach& reach) {
+  const bool has_force = state.stiffness > 0.0 || state.viscosity > 0.0 ||
+                         !is_none(state.elasticity) || !is_none(state.dissipation);
+  if (!has_force) return {};
+  Interval force = kAnyNumber;
+  if (is_none(state.dissipation) && std::isfinite(cell.low) && std::isfinite(cell.high)) {
+    const Interval a = tension_at(state, rest_length + cell.low, rest_length, reach);
+    const Interval b = tension_at(state, rest_length + cell.high, rest_length, reach);
+    const double drag =
+        state.viscosity > 0.0 ? state.viscosity * relative_speed(state, reach) : 0.0;
+    force = {std::min(a.low, b.low) - drag, std::max(a.high, b.high) + drag};
+  }
+  const double lowest = state.pushes ? -state.force_limit : 0.0;
+  const double highest = state.pulls ? state.force_limit : 0.0;
+  return {std::clamp(force.low, lowest, highest), std::clamp(force.high, lowest, highest)};
+}
+
+}  // namespace
+
+ConditionMap::ConditionMap(const engine::StateMachine& machine, double rest_length,
+                           const Reach& reach)
+    : machine_(machine),
+      rest_length_(rest_length),
+      reach_(reach),
+      scale_(std::max({reach.elongation, std::abs(rest_length), 1e-3})),
+      knows_rest_(machine.states.size(), !reach.rests_differ),
+      cells_(cells_between(edges_of(scale_))),
+      exits_(machine.exits.size()) {
+  find_known_rests();
+  refine();
+  for (std::size_t s = 0; s < machine.states.size(); ++s) {
+    for (std::uint32_t e = machine.states[s].first_exit; e < machine.states[s].last_exit; ++e)
+      exits_[e] = holding_of(s, machine.exits[e]);
+  }
+}
+
+void ConditionMap::find_known_rests() {
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (std::size_t s = 0; s < machine_.states.size(); ++s) {
+      const engine::LinkState& state = machine_.states[s];
+      for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+        const engine::Transition& exit = machine_.exits[e];
+        const bool keeps = exit.rest == engine::RestRule::kKeep;
+        if (!knows_rest_[exit.target] || (keeps && knows_rest_[s])) continue;
+        knows_rest_[exit.target] = false;
+        changes = true;
+      }
+    }
+  }
+}
+
+Interval ConditionMap::truth(std::size_t state, const engine::Transition& exit,
+                             const Interval& cell, const Interval& speed) const {
+  const auto asks = [&](engine::Quantity quantity) { return asks_for(exit.when, quantity); };
+  LinkBox box{
+      {std::max(cell.low, -kWidest) + rest_length_, std::min(cell.high, kWidest) + rest_length_},
+      speed,
+      rest_length_,
+      reach_.mass_a,
+      reach_.mass_b};
+  // The elongation is known even then; the distance and the rest length are not.
+  box.rest_moves = !knows_rest_[state] &&
+                   (asks(engine::Quantity::kDistance) || asks(engine::Quantity::kRestLength));
+  if (box.rest_moves) box.distance = {-kWidest, kWidest};
+  if (asks(engine::Quantity::kForce))
+    box.force = force_in(machine_.states[state], rest_length_, cell, reach_);
+  const Interval value = values_of(exit.when, box);
+  const bool is_number = !std::isnan(value.low) && !std::isnan(value.high);
+  if (!is_number) return {0.0, 1.0};
+  if (asks_for_variable(exit.when))  // it never surely holds
+    return {std::min(value.low, 0.0), std::max(value.high, 0.0)};
+  return value;
+}
+
+/// Adds the two ends of what is left of a cell in which a condition has its threshold.
+void ConditionMap::refine() {
+  constexpr int kHalvings = 40;
+  std::vector<double> edges = edges_of(scale_);
+  for (std::size_t s = 0; s < machine_.states.size(); ++s) {
+    const engine::LinkState& state = machine_.states[s];
+    for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
+      const auto sureness = [&](const Interval& cell) {
+        const Interval found = truth(s, machine_.exits[e], cell, kAnySpeed);
+        return surely_holds(found) ? 1 : surely_fails(found) ? -1 : 0;
+      };
+      std::vector<int> all;
+      for (const Interval& cell : cells_) all.push_back(sureness(cell));
+      for (std::size_t i = 1; i + 1 < cells_.size(); ++i) {
+        if (all[i] != 0 || all[i - 1] == 0 || all[i + 1] != -all[i - 1]) continue;
+        Interval rest = cells_[i];
+        for (int n = 0; n < kHalvings; ++n) {
+          const double middle = 0.5 * (rest.low + rest.high);
+          if (sureness({rest.low, middle}) == all[i - 1]) {
+            rest.low = middle;
+          } else if (sureness({middle, rest.high}) == all[i + 1]) {
+            rest.high = middle;
+          } else {
+            break;
+          }
+        }
+        edges.push_back(rest.low);
+        edges.push_back(rest.high);
+      }
+    }
+  }
+  cells_ = cells_between(edges);
+}
+
+Holding ConditionMap::holding_of(std::size_t state, const engine::Transition& exit) const {
+  const bool asks_for_speed = asks_for(exit.when, engine::Quantity::kSpeed);
+  Holding holding;
+  for (const Interval& cell : cells_) {
+    const Interval any = truth(state, exit, cell, kAnySpeed);
+    holding.may_hold.push_back(!surely_fails(any));
+    holding.may_fail.push_back(!surely_holds(any));
+    const auto may_fail_at = [&](const Interval& speed) {
+      return asks_for_speed ? !surely_holds(truth(state, exit, cell, speed)) : !surely_holds(any);
+    };
+    holding.may_fail_shortening.push_back(may_fail_at({-kWidest, -kBarelyMoving}));
+    holding.may_fail_lengthening.push_back(may_fail_at({kBarelyMoving, kWidest}));
+  }
+  return holding;
+}
+
+}  // namespace cordis::plan

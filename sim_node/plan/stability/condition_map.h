@@ -1,0 +1,54 @@
+// sim_node/plan/stability/condition_map.h -- at which elongations exits may hold.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "sim_node/engine/description/state_machine.h"
+#include "sim_node/plan/stability/reach.h"
+
+namespace cordis::plan {
+
+/// One exit, for each cell of elongations.
+struct Holding {
+  std::vector<bool> may_hold;
+  std::vector<bool> may_fail;
+  /// Likewise where the ends come nearer, and where they part.
+  std::vector<bool> may_fail_shortening;
+  std::vector<bool> may_fail_lengthening;
+};
+
+/// Elongations side by side, fine near 0 and at thresholds of the conditions.
+class ConditionMap {
+ public:
+  /// O(exits), some hundred enclosures each.
+  /// @param rest_length  at the start [m]
+  ConditionMap(const engine::StateMachine& machine, double rest_length, const Reach& reach);
+
+  /// They touch each other; the first and the last one have no end.
+  const std::vector<Interval>& cells() const noexcept { return cells_; }
+  const Holding& of_exit(std::size_t exit) const { return exits_[exit]; }
+  /// False once an exit on the way to a state moved the rest length.
+  bool knows_rest(std::size_t state) const { return knows_rest_[state]; }
+  double scale() const noexcept { return scale_; }  ///< [m]
+
+  static constexpr double kAtRest = 1e-6;  ///< the narrowest cell at 0, in scales
+  static constexpr double kFarAway = 1e3;  ///< where the last cell begins, in scales
+
+ private:
+  void find_known_rests();
+  void refine();
+  Interval truth(std::size_t state, const engine::Transition& exit, const Interval& cell,
+                 const Interval& speed) const;
+  Holding holding_of(std::size_t state, const engine::Transition& exit) const;
+
+  const engine::StateMachine& machine_;
+  double rest_length_;
+  const Reach& reach_;
+  double scale_;
+  std::vector<bool> knows_rest_;
+  std::vector<Interval> cells_;
+  std::vector<Holding> exits_;
+};
+
+}  // namespace cordis::plan

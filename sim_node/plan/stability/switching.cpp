@@ -1,0 +1,167 @@
+// sim_node/plan/stability/switching.cpp
+#include "sim_node/plan/stability/switching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "sim_node/plan/stability/entry.h"
+#include "sim_node/plan/stability/set_slope.h"
+#include "sim_node/plan/stability/start_point.h"
+
+namespace cordis::plan {
+namespace {
+
+using engine::LiaisonId;
+using engine::LiaisonKind;
+using engine::NetworkDescription;
+
+/// So many rest lengths of links of one liaison count each on their own.
+constexpr std::size_t kRestLengths = 16;
+
+/// Links, or the pairs of a set, that count alike.
+struct Kind {
+  LiaisonId first;
+  std::uint32_t state_machine = 0;
+  double rest_length = 0.0;  // [m]
+  bool turns = false;
+  Reach reach = {};                 // without what changes of state bring in
+  std::vector<double> counts = {};  // per MAT: how many of them count at it
+  double count = 0.0;               // of all
+
+  /// What one of them brings in where the scene has so much more energy [J].
+  double brought(const NetworkDescription& network, double more) const {
+    Reach here = reach;
+    here.brought += more;
+    double most = 0.0;
+    for (const Entry& entry :
+         entries_of(network.state_machines[state_machine], rest_length, turns, here))
+      most = std::max(most, entry.brought);
+    return most;
+  }
+  void add_at(std::uint32_t mat, double number) {
+    counts[mat] += number;
+    count += number;
+  }
+};
+
+bool is_free_mass(const NetworkDescription& network, std::uint32_t mat) {
+  return network.mats[mat].kind == engine::MatKind::kMass;
+}
+
+/// The links of one liaison, by rest length where there are few.
+using LinksByKind = std::map<std::pair<std::uint32_t, float>, std::vector<std::uint32_t>>;
+
+LinksByKind links_by_kind(const NetworkDescription& network) {
+  LinksByKind kinds;
+  for (std::uint32_t l = 0; l < network.state_links.size(); ++l) {
+    const engine::StateLink& link = network.state_links[l];
+    if (network.state_machines[link.state_machine].exits.empty()) continue;
+    kinds[{link.state_machine, static_cast<float>(link.rest_length)}].push_back(l);
+  }
+  std::map<std::uint32_t, std::size_t> lengths;
+  for (const auto& [key, links] : kinds) ++lengths[key.first];
+  LinksByKind merged;
+  for (const auto& [key, links] : kinds) {
+    const bool is_one_of_few = lengths[key.first] <= kRestLengths;
+    auto& all = merged[{key.first, is_one_of_few ? key.second : 0.0F}];
+    all.insert(all.end(), links.begin(), links.end());
+  }
+  return merged;
+}
+
+Kind kind_of(const NetworkDescription& network, const std::vector<std::uint32_t>& links,
+             const Reach& reach) {
+  const engine::StateLink& first = network.state_links[links.front()];
+  Kind kind{{LiaisonKind::kStateLink, links.front()}, first.state_machine, first.rest_length};
+  kind.turns = network.dimension > 1;
+  kind.counts.assign(network.mats.size(), 0.0);
+  std::vector<std::uint32_t> mats_a;
+  std::vector<std::uint32_t> mats_b;
+  Interval begins{start_point(network, first).elongation, start_point(network, first).elongation};
+  bool rests_differ = false;
+  for (const std::uint32_t l : links) {
+    const engine::StateLink& link = network.state_links[l];
+    const double elongation = start_point(network, link).elongation;
+    begins = {std::min(begins.low, elongation), std::max(begins.high, elongation)};
+    rests_differ = rests_differ ||
+                   static_cast<float>(link.rest_length) != static_cast<float>(first.rest_length);
+    mats_a.push_back(link.mat_a);
+    mats_b.push_back(link.mat_b);
+    kind.add_at(is_free_mass(network, link.mat_a) ? link.mat_a : link.mat_b, 1.0);
+  }
+  kind.reach = reach_between(reach, network, mats_a, mats_b);
+  kind.reach.begins = begins;
+  kind.reach.rests_differ = rests_differ;
+  return kind;
+}
+
+Kind kind_of(const NetworkDescription& network, std::uint32_t index, const Reach& reach) {
+  const engine::SetLiaison& set = network.sets[index];
+  const SetStart start = set_start_of(network, set, reach);
+  Kind kind{{LiaisonKind::kSet, index}, set.state_machine, start.rest_length};
+  kind.turns = network.dimension > 1 && !engine::acts_on_surfaces(network, set);
+  kind.reach = start.reach;
+  kind.counts.assign(network.mats.size(), 0.0);
+  const bool is_within = set.set_q.empty();
+  const auto& others = is_within ? set.set_p : set.set_q;
+  const bool p_moves =
+      std::ranges::any_of(set.set_p, [&](std::uint32_t mat) { return is_free_mass(network, mat); });
+  const double pairs = static_cast<double>(p_moves ? others.size() : set.set_p.size());
+  for (const std::uint32_t mat : p_moves ? set.set_p : others) {
+    if (is_free_mass(network, mat)) kind.add_at(mat, is_within ? 0.5 * (pairs - 1.0) : pairs);
+  }
+  return kind;
+}
+
+}  // namespace
+
+Switching switching_of(const NetworkDescription& network, const Reach& reach) {
+  std::vector<Kind> kinds;
+  for (const auto& [key, links] : links_by_kind(network))
+    kinds.push_back(kind_of(network, links, reach));
+  for (std::uint32_t s = 0; s < network.sets.size(); ++s) {
+    if (!network.state_machines[network.sets[s].state_machine].exits.empty())
+      kinds.push_back(kind_of(network, s, reach));
+  }
+  Switching switching;
+  std::vector<double> each(kinds.size(), 0.0);
+  const auto find = [&](double more) {
+    double all = 0.0;
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+      each[k] = kinds[k].brought(network, more);
+      if (std::isinf(each[k]) && !switching.endless) switching.endless = kinds[k].first;
+      if (std::isinf(each[k])) each[k] = 0.0;
+      all += kinds[k].count * each[k];
+    }
+    return all;
+  };
+  constexpr int kRounds = 20;
+  constexpr double kMore = 1.05;
+  double all = find(0.0);
+  double sources = 0.0;
+  for (std::size_t k = 0; k < kinds.size(); ++k) sources += each[k] > 0.0 ? kinds[k].count : 0.0;
+  double known = all;
+  for (int round = 0; sources > 1.0 && all > 0.0; ++round) {
+    known = kMore * all;
+    all = find(known);
+    if (all <= known) break;
+    if (round < kRounds) continue;
+    std::size_t most = 0;
+    for (std::size_t k = 0; k < kinds.size(); ++k)
+      if (kinds[k].count * each[k] > kinds[most].count * each[most]) most = k;
+    switching.endless = kinds[most].first;
+    break;
+  }
+  switching.at_mats.assign(network.mats.size(), 0.0);
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    for (std::size_t mat = 0; mat < network.mats.size(); ++mat)
+      switching.at_mats[mat] += kinds[k].counts[mat] * each[k];
+  }
+  for (const double part : switching.at_mats) switching.all += part;
+  return switching;
+}
+
+}  // namespace cordis::plan
