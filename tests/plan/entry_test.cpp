@@ -183,14 +183,14 @@ TEST(EntryOfAPower, BringsInNothingFromAStateThatStoresAsMuch) {
   plan::Reach reach;
   reach.brought = 0.001;
   reach.elongation = 0.1;
-  const auto entries = plan::entries_of(machine, 0.1, /*turns=*/false, reach);
+  const auto entries = plan::entries_of(machine, 0.1, plan::kAnyNumber, reach);
   EXPECT_FALSE(entries[0].by_a_change);
   EXPECT_TRUE(entries[1].by_a_change);
   EXPECT_EQ(entries[1].brought, 0.0);
   // From half as stiff: it takes 1.01 mJ, so that it is 1.01 mJ less than what the other one has there.
   const StateMachine harder =
       Behaving().state(cubic(1.5e5)).exit(kOld > 0.05, 1).state(cubic(3e5)).state_machine;
-  const double brought = plan::entries_of(harder, 0.1, /*turns=*/false, reach)[1].brought;
+  const double brought = plan::entries_of(harder, 0.1, plan::kAnyNumber, reach)[1].brought;
   EXPECT_GT(brought, 0.00101);
   EXPECT_LT(brought, 0.00125);
 }

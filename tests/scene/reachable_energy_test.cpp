@@ -288,6 +288,20 @@ links:
   - {liaison: latch, between: [g, a], rest_m: 0.4, name: latch}
   - {liaison: soft, between_sets: [wall, a], name: stop}
 )yaml"},
+    {"AClockThatBendsAKnee", 528.0, R"yaml(
+liaisons:
+  knee:
+    kind: bending
+    states:
+      a: {stiffness_n_m_per_rad: 0.05, rest_rad: 0, exits: [{to: b, when: age_s > 0.1}]}
+      b: {stiffness_n_m_per_rad: 0.05, rest_rad: 1, exits: [{to: a, when: age_s > 0.1}]}
+  stop: {elasticity: {kind: power, coefficient: 300000, exponent: 3}, stiffness_n_per_m: 20}
+matter: {p: {kind: points, mass_kg: 0.01, at_m: [[0, 0], [0.1, 0], [0.2, 0]]}}
+links:
+  - {liaison: knee, between: ["p[0]", "p[1]", "p[2]"], name: knee}
+  - {liaison: stop, between: ["p[0]", "p[1]"], rest_m: 0.1}
+  - {liaison: stop, between: ["p[1]", "p[2]"], rest_m: 0.1}
+)yaml"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NotCertain, testing::ValuesIn(kNotCertain),
@@ -374,6 +388,20 @@ matter:
 links:
   - {liaison: glue, within: a, name: glue}
   - {liaison: stop, between: [g, "a[0]"], rest_m: 1, name: stop}
+)yaml"},
+    {"AKneeThatSnapsWhereBothStatesStoreTheSame", 2000.0, R"yaml(
+liaisons:
+  snap:
+    kind: bending
+    states:
+      down: {stiffness_n_m_per_rad: 0.05, rest_rad: -0.5, exits: [{to: up, when: angle_rad > 0}]}
+      up: {stiffness_n_m_per_rad: 0.05, rest_rad: 0.5, exits: [{to: down, when: angle_rad < 0}]}
+  stop: {elasticity: {kind: power, coefficient: 300000, exponent: 3}, stiffness_n_per_m: 20}
+matter: {p: {kind: points, mass_kg: 0.01, at_m: [[0, 0], [0.1, 0], [0.2, 0]]}}
+links:
+  - {liaison: snap, between: ["p[0]", "p[1]", "p[2]"], name: snap}
+  - {liaison: stop, between: ["p[0]", "p[1]"], rest_m: 0.1}
+  - {liaison: stop, between: ["p[1]", "p[2]"], rest_m: 0.1}
 )yaml"},
 };
 

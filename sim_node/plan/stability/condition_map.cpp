@@ -45,6 +45,17 @@ bool surely_fails(const Interval& truth) {
   return truth.low == 0.0 && truth.high == 0.0;
 }
 
+/// The rest lengths after a change, at most two: any.
+std::vector<double> rests_after(const std::vector<double>& before, const engine::Transition& exit) {
+  constexpr double kAnyLength = std::numeric_limits<double>::quiet_NaN();
+  if (exit.rest == engine::RestRule::kKeep) return before;
+  const std::vector<engine::Instruction>& code = exit.rest_length.code;
+  if (exit.rest == engine::RestRule::kExpression && code.size() == 1 &&
+      code[0].operation == engine::Operation::kConstant)
+    return {code[0].constant};
+  return {kAnyLength, kAnyLength};
+}
+
 /// What a state pulled with in the step before, at elongations in a cell [N].
 Interval force_in(const engine::LinkState& state, double rest_length, const Interval& cell,
                   const Reach& reach) {
@@ -72,7 +83,7 @@ ConditionMap::ConditionMap(const engine::StateMachine& machine, double rest_leng
       rest_length_(rest_length),
       reach_(reach),
       scale_(std::max({reach.elongation, std::abs(rest_length), 1e-3})),
-      knows_rest_(machine.states.size(), !reach.rests_differ),
+      rests_(machine.states.size()),
       cells_(cells_between(edges_of(scale_))),
       exits_(machine.exits.size()) {
   find_known_rests();
@@ -84,16 +95,25 @@ ConditionMap::ConditionMap(const engine::StateMachine& machine, double rest_leng
 }
 
 void ConditionMap::find_known_rests() {
+  if (reach_.rests_differ) return;
+  rests_[machine_.start] = {rest_length_};
+  const auto add = [&](std::size_t state, const std::vector<double>& lengths) {
+    bool adds = false;
+    for (const double length : lengths) {
+      std::vector<double>& known = rests_[state];
+      if (known.size() > 1 || std::ranges::find(known, length) != known.end()) continue;
+      known.push_back(length);
+      adds = true;
+    }
+    return adds;
+  };
   for (bool changes = true; changes;) {
     changes = false;
     for (std::size_t s = 0; s < machine_.states.size(); ++s) {
       const engine::LinkState& state = machine_.states[s];
       for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {
         const engine::Transition& exit = machine_.exits[e];
-        const bool keeps = exit.rest == engine::RestRule::kKeep;
-        if (!knows_rest_[exit.target] || (keeps && knows_rest_[s])) continue;
-        knows_rest_[exit.target] = false;
-        changes = true;
+        changes = add(exit.target, rests_after(rests_[s], exit)) || changes;
       }
     }
   }
@@ -101,19 +121,20 @@ void ConditionMap::find_known_rests() {
 
 Interval ConditionMap::truth(std::size_t state, const engine::Transition& exit,
                              const Interval& cell, const Interval& speed) const {
+  const double rest_length = rest(state);
   const auto asks = [&](engine::Quantity quantity) { return asks_for(exit.when, quantity); };
   LinkBox box{
-      {std::max(cell.low, -kWidest) + rest_length_, std::min(cell.high, kWidest) + rest_length_},
+      {std::max(cell.low, -kWidest) + rest_length, std::min(cell.high, kWidest) + rest_length},
       speed,
-      rest_length_,
+      rest_length,
       reach_.mass_a,
       reach_.mass_b};
   // The elongation is known even then; the distance and the rest length are not.
-  box.rest_moves = !knows_rest_[state] &&
+  box.rest_moves = !knows_rest(state) &&
                    (asks(engine::Quantity::kDistance) || asks(engine::Quantity::kRestLength));
   if (box.rest_moves) box.distance = {-kWidest, kWidest};
   if (asks(engine::Quantity::kForce))
-    box.force = force_in(machine_.states[state], rest_length_, cell, reach_);
+    box.force = force_in(machine_.states[state], rest_length, cell, reach_);
   const Interval value = values_of(exit.when, box);
   const bool is_number = !std::isnan(value.low) && !std::isnan(value.high);
   if (!is_number) return {0.0, 1.0};

@@ -28,8 +28,12 @@ class ConditionMap {
   /// They touch each other; the first and the last one have no end.
   const std::vector<Interval>& cells() const noexcept { return cells_; }
   const Holding& of_exit(std::size_t exit) const { return exits_[exit]; }
-  /// False once an exit on the way to a state moved the rest length.
-  bool knows_rest(std::size_t state) const { return knows_rest_[state]; }
+  /// False once exits on the ways to a state moved the rest length, but for one to the same number.
+  bool knows_rest(std::size_t state) const { return rests_[state].size() == 1; }
+  /// The rest length in a state where it is known, else that of the start [m].
+  double rest(std::size_t state) const {
+    return knows_rest(state) ? rests_[state].front() : rest_length_;
+  }
   double scale() const noexcept { return scale_; }  ///< [m]
 
   static constexpr double kAtRest = 1e-6;  ///< the narrowest cell at 0, in scales
@@ -46,7 +50,7 @@ class ConditionMap {
   double rest_length_;
   const Reach& reach_;
   double scale_;
-  std::vector<bool> knows_rest_;
+  std::vector<std::vector<double>> rests_;  // of each state: two or none stand for any
   std::vector<Interval> cells_;
   std::vector<Holding> exits_;
 };

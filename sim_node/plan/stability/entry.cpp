@@ -64,11 +64,13 @@ bool is_elastic(const engine::LinkState& state) {
 /// The ways through the states of a liaison, and what they bring in.
 class Ways {
  public:
-  Ways(const engine::StateMachine& machine, double rest_length, bool turns, double share,
-       const Reach& reach)
+  Ways(const engine::StateMachine& machine, double rest_length, const Interval& possible,
+       double share, const Reach& reach)
       : machine_(machine),
         rest_length_(rest_length),
-        turns_(turns),
+        possible_(possible),
+        moves_rest_(std::ranges::any_of(
+            machine.exits, [](const auto& exit) { return exit.rest != engine::RestRule::kKeep; })),
         reach_(reach),
         map_(machine, rest_length, reach),
         entered_(machine.states.size() + 1),
@@ -77,8 +79,8 @@ class Ways {
         present_(entered_.size()),
         lowest_(entered_.size(), 0.0),
         brought_(entered_.size(), -kBoundless) {
-    for (const engine::LinkState& state : machine.states)
-      potentials_.emplace_back(state, rest_length, map_.cells(), share, reach);
+    for (std::size_t s = 0; s < machine.states.size(); ++s)
+      potentials_.emplace_back(machine.states[s], map_.rest(s), map_.cells(), share, reach);
     entered_.back() = reach.begins;
     brought_.back() = 0.0;
     if (std::isfinite(reach.range)) {  // a pair that comes back into range begins again
@@ -123,6 +125,10 @@ class Ways {
     Reach reach = reach_;
     reach.brought += std::max(brought_[node], 0.0);
     return reach;
+  }
+
+  bool is_at_first_rest(std::size_t node) const {
+    return map_.knows_rest(number(node)) && map_.rest(number(node)) == rest_length_;
   }
 
   /// True if an exit changes nothing.
@@ -170,9 +176,12 @@ class Ways {
     if (!entered_[node]) return;
     const std::vector<Interval>& cells = map_.cells();
     const Interval began = *entered_[node];
-    Interval all = *hull_of(began, elongations_within(in(node), rest_length_, reach_in(node)));
-    if (turns_ && map_.knows_rest(number(node)))
-      all.low = std::min(std::max(all.low, -rest_length_), began.low);
+    Interval all =
+        *hull_of(began, elongations_within(in(node), map_.rest(number(node)), reach_in(node)));
+    if (is_at_first_rest(node) || std::isfinite(possible_.high)) {
+      all.low = std::min(std::max(all.low, possible_.low), began.low);
+      all.high = std::max(std::min(all.high, possible_.high), began.high);
+    }
     carried_[node] = all;
     for (const Interval& cell : cells) {
       const auto i = static_cast<std::size_t>(&cell - cells.data());
@@ -186,8 +195,9 @@ class Ways {
       all.low = std::max(all.low, cells[i].high);
       break;
     }
-    if (number(node) == machine_.start &&
-        std::isfinite(reach_.range))  // beyond it no pair is in that state
+    // Beyond its range no pair is in the state of the start.
+    const bool has_range = number(node) == machine_.start && std::isfinite(reach_.range);
+    if (has_range && (is_at_first_rest(node) || !moves_rest_))
       all.high = std::max(began.high, std::min(all.high, reach_.range - rest_length_));
     moved_[node] = moved_in(node);
     present_[node] = *hull_of(all, moved_[node]);
@@ -260,7 +270,7 @@ class Ways {
   }
 
   /// The elongation after a change to an expression; none: it may be any.
-  std::optional<double> renewed(const engine::Transition& exit, bool knows_rest,
+  std::optional<double> renewed(const engine::Transition& exit, std::size_t state,
                                 double elongation) const {
     using engine::Quantity;
     for (const Quantity each :
@@ -281,9 +291,9 @@ class Ways {
       set(Quantity::kMassB, reach_.mass_b.high);
       return rest + elongation - value_of(exit.rest_length, now);
     };
-    const double here = after(rest_length_);
+    const double here = after(map_.rest(state));
     if (!std::isfinite(here)) return {};
-    if (knows_rest) return here;
+    if (map_.knows_rest(state)) return here;
     const double scale = map_.scale();
     for (const double other :
          {0.0, 2.0 * scale, -3.0 * scale}) {  // does it move along with the rest?
@@ -304,7 +314,7 @@ class Ways {
     double next = elongation;
     if (exit.rest == engine::RestRule::kHere) next = 0.0;
     if (exit.rest == engine::RestRule::kExpression) {
-      const std::optional<double> found = renewed(exit, map_.knows_rest(number(node)), elongation);
+      const std::optional<double> found = renewed(exit, number(node), elongation);
       if (!found) return {is_elastic(machine_.states[to]) ? kBoundless : 0.0, kAnyNumber};
       next = *found;
     }
@@ -451,7 +461,8 @@ class Ways {
 
   const engine::StateMachine& machine_;
   double rest_length_;
-  bool turns_;
+  Interval possible_;
+  bool moves_rest_;
   const Reach& reach_;
   ConditionMap map_;
   std::vector<StatePotential> potentials_;
@@ -466,8 +477,12 @@ class Ways {
 
 }  // namespace
 
+Interval possible_elongations(double rest_length, bool turns) noexcept {
+  return turns ? Interval{-rest_length, kBoundless} : kAnyNumber;
+}
+
 std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double rest_length,
-                              bool turns, const Reach& reach) {
+                              const Interval& possible, const Reach& reach) {
   std::vector<Entry> entries(state_machine.states.size());
   for (const engine::Transition& exit : state_machine.exits)
     entries[exit.target].by_a_change = true;
@@ -475,7 +490,7 @@ std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double 
     return entries;
   for (const double share : {0.0, 1.0}) {
     const std::vector<double> brought =
-        Ways(state_machine, rest_length, turns, share, reach).brought();
+        Ways(state_machine, rest_length, possible, share, reach).brought();
     for (std::size_t s = 0; s < entries.size(); ++s)
       entries[s].brought = std::max(entries[s].brought, brought[s]);
     if (reach.mass_a.low == reach.mass_a.high && reach.mass_b.low == reach.mass_b.high) break;

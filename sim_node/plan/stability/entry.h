@@ -23,8 +23,11 @@ struct Entry {
 /// an end. Where the force jumps at a threshold, it counts a step farther.
 /// O(states^2 samples), some thousand enclosures for each exit.
 /// @param rest_length  at the start [m]; of a set, that of its nearest pair
-/// @param turns        its distance has no sign, and so it is not shorter than to length 0
+/// @param possible     the elongations that it can have [m]; where one end is infinite, at its first rest length alone
 std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double rest_length,
-                              bool turns, const Reach& reach);
+                              const Interval& possible, const Reach& reach);
+
+/// The elongations of a link [m]: where its distance has no sign it is not shorter than to length 0.
+Interval possible_elongations(double rest_length, bool turns) noexcept;
 
 }  // namespace cordis::plan

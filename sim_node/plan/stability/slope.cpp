@@ -358,7 +358,7 @@ bool is_flat_power(const engine::LinkState& state) {
 std::vector<Entry> entries_where_powers_ask(const engine::StateMachine& state_machine,
                                             double rest_length, bool turns, const Reach& reach) {
   if (std::ranges::any_of(state_machine.states, is_flat_power))
-    return entries_of(state_machine, rest_length, turns, reach);
+    return entries_of(state_machine, rest_length, possible_elongations(rest_length, turns), reach);
   std::vector<Entry> entries(state_machine.states.size());
   for (const engine::Transition& exit : state_machine.exits)
     entries[exit.target].by_a_change = true;

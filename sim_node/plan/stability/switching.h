@@ -10,7 +10,7 @@
 
 namespace cordis::plan {
 
-/// What the changes of state of links and of pairs of sets bring in, all together.
+/// What the changes of state of links, of bends and of pairs of sets bring in, all together.
 struct Switching {
   double all = 0.0;             ///< [J]
   std::vector<double> at_mats;  ///< the parts of it, each at one MAT of its liaison [J]
@@ -20,7 +20,7 @@ struct Switching {
 
 /// The energy that they bring in drives them, too. One liaison alone finds what it brought in itself, and each of several
 /// what all bring in.
-/// O(kinds of links and sets), each some thousand enclosures for each exit.
+/// O(kinds of links, of bends and sets), each some thousand enclosures for each exit.
 /// @param reach  of the network, without what changes of state bring in
 Switching switching_of(const engine::NetworkDescription& network, const Reach& reach);
 
