@@ -882,7 +882,7 @@ TEST(RandomScenes, MakeNoEnergyAtShortSteps) {
     EXPECT_EQ(run.growth, "") << "dt " << network.step << " " << named(seed);
   };
   const std::uint32_t tried = for_each_certified(kPart, visit);
-  EXPECT_GT(tried, 3 * kCount / 10);
+  EXPECT_GT(tried, kCount / 4);
   RecordProperty("largest error", std::to_string(worst));
 }
 
