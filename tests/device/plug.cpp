@@ -71,7 +71,7 @@ void Plug::step() {
   lives_ = true;
   turn_begin_nsec_ = node::monotonic_nsec();
   thread_ = std::thread([this] {
-    const sched_param priority{sched_get_priority_min(SCHED_FIFO)};
+    const sched_param priority{sched_get_priority_max(SCHED_FIFO)};
     if (is_prompt) pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
     while (lives_) {
       const std::int64_t now = node::monotonic_nsec();

@@ -29,8 +29,8 @@ class Plug {
   int into_udp();                                            ///< the port of it
   void pull();
 
-  /// A board does not share this machine's processors: its thread has realtime priority where that
-  /// is permitted. False for a board that computes much.
+  /// A board does not share this machine's processors: its thread has the highest realtime priority
+  /// where that is permitted. False for a board that computes much.
   bool is_prompt = true;
 
   /// What happens to the n-th answer.
