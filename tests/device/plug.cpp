@@ -6,16 +6,15 @@
 #include <cstdlib>
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/socket.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include "node/time.h"
+#include "tests/support/pseudo_terminal.h"
 
 namespace cordis::test {
 
@@ -25,16 +24,9 @@ std::chrono::nanoseconds Plug::longest_turn() const noexcept {
 }
 
 void Plug::into_serial_line(const std::filesystem::path& link) {
-  wire_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  ASSERT_GE(wire_, 0);
-  ASSERT_EQ(grantpt(wire_), 0);
-  ASSERT_EQ(unlockpt(wire_), 0);
+  wire_ = open_board_end();
   // Held open, so that there is no end of file while the driver is away.
-  keeper_ = ::open(ptsname(wire_), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  termios line{};
-  tcgetattr(keeper_, &line);
-  cfmakeraw(&line);
-  tcsetattr(keeper_, TCSANOW, &line);
+  keeper_ = open_node_end(wire_);
   std::filesystem::remove(link);
   std::filesystem::create_symlink(ptsname(wire_), link);
   link_ = link;

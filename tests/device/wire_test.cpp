@@ -20,6 +20,7 @@
 #include "node/config/yaml_reader.h"
 #include "tests/support/captured_log.h"
 #include "tests/support/eventually.h"
+#include "tests/support/pseudo_terminal.h"
 
 namespace {
 
@@ -58,9 +59,7 @@ using Bytes = std::vector<std::uint8_t>;
 class BlockedLine : public ::testing::Test {
  protected:
   BlockedLine() {
-    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    grantpt(master_);
-    unlockpt(master_);
+    master_ = test::open_board_end();
     config::Problems problems;
     const config::Value section =
         config::load_text("{port: " + std::string(ptsname(master_)) + "}", "line", problems);

@@ -2,13 +2,11 @@
 #include "tests/support/line_control.h"
 
 #include <algorithm>
-#include <cstdlib>
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
 #include <poll.h>
-#include <termios.h>
 #include <unistd.h>
+
+#include "tests/support/pseudo_terminal.h"
 
 namespace cordis::test {
 namespace {
@@ -19,18 +17,8 @@ std::int64_t clock_nsec() noexcept {
 
 }  // namespace
 
-LineControl::LineControl() {
-  board_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  EXPECT_EQ(grantpt(board_), 0);
-  EXPECT_EQ(unlockpt(board_), 0);
-  node_ = ::open(ptsname(board_), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  EXPECT_GE(node_, 0);
-  termios line{};
-  tcgetattr(node_, &line);
-  cfmakeraw(&line);
-  tcsetattr(node_, TCSANOW, &line);
-  thread_ = std::thread([this] { run(); });
-}
+LineControl::LineControl()
+    : board_(open_board_end()), node_(open_node_end(board_)), thread_([this] { run(); }) {}
 
 LineControl::~LineControl() {
   ends_ = true;

@@ -27,8 +27,8 @@ class LineControl {
  private:
   void run() noexcept;
 
-  int board_ = -1;
-  int node_ = -1;
+  int board_;
+  int node_;
   std::atomic<std::int64_t> sent_nsec_{0};  // of a byte that has not arrived; 0: none
   std::atomic<std::int64_t> worst_nsec_{0};
   std::atomic<std::uint64_t> bytes_{0};

@@ -106,14 +106,13 @@ TEST(HangWatch, EndsATestThatHangsWithTheOutputOfItsProcesses) {
       << said;
 }
 
-/// How late a control was in a process that stalled for `pause`.
-template <class Control>
+/// How late a timer was in a process that stalled for `pause`.
 std::chrono::nanoseconds worst_after_a_pause_of(std::chrono::milliseconds pause) {
   int ends[2];
   EXPECT_EQ(pipe(ends), 0);
   const pid_t child = fork();
   if (child == 0) {
-    const Control control;
+    const TimerControl control;
     while (control.turn_count() == 0) usleep(100);
     raise(SIGSTOP);
     const std::uint64_t before = control.turn_count();
@@ -136,8 +135,7 @@ std::chrono::nanoseconds worst_after_a_pause_of(std::chrono::milliseconds pause)
 }
 
 TEST(TimerControl, CountsAPauseOfTheProcessAsADelay) {
-  EXPECT_GE(worst_after_a_pause_of<TimerControl>(30ms), 28ms)
-      << "30 ms, less the period in which it began";
+  EXPECT_GE(worst_after_a_pause_of(30ms), 28ms) << "30 ms, less the period in which it began";
 }
 
 TEST(TimerControl, WakesAgainAndAgainAndSaysWhyATestIsSkipped) {

@@ -354,7 +354,8 @@ bool is_flat_power(const engine::LinkState& state) {
   return power != nullptr && power->exponent >= 1.0 && is_none(state.dissipation);
 }
 
-/// Without what they bring in where no state is a power that is flat at its rest.
+/// How each state is entered. The energy that an entry brings in is found only where a state has a flat power: no other
+/// law asks for it.
 std::vector<Entry> entries_where_powers_ask(const engine::StateMachine& state_machine,
                                             double rest_length, bool turns, const Reach& reach) {
   if (std::ranges::any_of(state_machine.states, is_flat_power))
