@@ -19,8 +19,8 @@
 namespace cordis::cli {
 namespace {
 
-constexpr auto kUsualDiscovery = std::chrono::milliseconds(700);
-constexpr auto kLongestDiscovery = std::chrono::seconds(5);
+constexpr auto kWritersKnownAfter = std::chrono::milliseconds(700);
+constexpr auto kWritersAtMost = std::chrono::seconds(5);
 
 std::string qos_text(const dds::RawTopic& topic) {
   std::string text = topic.reliable ? "reliable" : "best effort";
@@ -30,12 +30,12 @@ std::string qos_text(const dds::RawTopic& topic) {
   return text;
 }
 
-/// All processes of a host are found within kUsualDiscovery. A discovery server or another host may
-/// take longer for the first.
+/// All processes of a host are found within kWritersKnownAfter. A discovery server or another host
+/// may take longer for the first.
 void wait_for_writers(const dds::Participant& participant) {
-  const auto end = std::chrono::steady_clock::now() + kLongestDiscovery;
+  const auto end = std::chrono::steady_clock::now() + kWritersAtMost;
   do {
-    std::this_thread::sleep_for(kUsualDiscovery);
+    std::this_thread::sleep_for(kWritersKnownAfter);
   } while (participant.writers().empty() && std::chrono::steady_clock::now() < end);
 }
 
