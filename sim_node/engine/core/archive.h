@@ -38,6 +38,7 @@ class Archive {
   /// Adds to the hash what is shown to hash() and hash_rows().
   static Archive hashing(StateHash& hash) { return {Task::kHash, {}, nullptr, &hash}; }
 
+  bool saves() const noexcept { return task_ == Task::kSave; }
   bool restores() const noexcept { return task_ == Task::kRestore; }
   bool hashes() const noexcept { return task_ == Task::kHash; }
   /// Values counted.

@@ -7,22 +7,21 @@
 #include <vector>
 
 #include "sim_node/engine/core/archive.h"
-#include "sim_node/engine/core/vec.h"
 
 namespace cordis::engine {
 
-/// The spring of a contact, across its line of centres.
-struct ContactStretch {
-  std::uint32_t column = 0;  // of the later member
-  std::uint32_t mode = 0;    // twice the number of its state, and 1 more while it slides
-  double x = 0.0;            // [m]
-  double y = 0.0;
-  double z = 0.0;
+/// The springs of some contacts, each across its line of centres: one array for each value. Contacts are in
+/// the order of their rows, and within a row in that of the later member.
+struct StretchRows {
+  const std::uint32_t* column = nullptr;  // of the later member
+  const std::uint32_t* state = nullptr;   // the number of its state; null: 0
+  const double* phase = nullptr;          // kSticks or kSlides
+  const double* stretch[3] = {};          // [m]
+  std::size_t count = 0;
 };
 
-/// The contacts that push, row by row, each row by the later member. A step reads the rows
-/// of the last one and writes its own beside them; there is room for a number of contacts that
-/// make_room() enlarges between two steps.
+/// The contacts that push, row by row. A step reads the rows of the last one and writes its own
+/// beside them; there is room for a number of contacts that make_room() enlarges between two steps.
 class ContactStretches {
  public:
   ContactStretches() = default;
@@ -32,37 +31,30 @@ class ContactStretches {
   void begin_step() noexcept;
   /// Forgets what was written since, and stands as before it.
   void take_back_step() noexcept;
-  /// Contacts of a row in the last step.
-  const ContactStretch* old_begin(std::size_t row) const noexcept {
-    return read_.contacts.data() + read_.start[row];
+  /// Contacts of the last step in the rows from `first` on, before `last`.
+  StretchRows old_rows(std::size_t first, std::size_t last) const noexcept {
+    return read_.rows(first, last);
   }
-  const ContactStretch* old_end(std::size_t row) const noexcept {
-    return read_.contacts.data() + read_.start[row + 1];
-  }
-  /// Adds a contact to the row that is being written.
-  /// @return false when there is no room: the contact is forgotten.
-  [[nodiscard]] bool add(const ContactStretch& contact) noexcept {
-    if (written_.contacts.size() == capacity()) return false;
-    written_.contacts.push_back(contact);
-    written_.sum_of_squares +=
-        contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
-    return true;
-  }
+  /// Contacts of the last step before a row.
+  std::size_t old_start(std::size_t row) const noexcept { return read_.start[row]; }
+  /// Adds contacts to what is being written.
+  /// @return how many there was room for; the others are forgotten.
+  [[nodiscard]] std::size_t add(const StretchRows& contacts) noexcept;
   /// Ends a row, and all before it that have not been ended.
-  void end_row(std::size_t row) noexcept;
+  void end_row(std::size_t row) noexcept { end_row_at(row, count()); }
+  /// Likewise. @param end  contacts that are written up to its end
+  void end_row_at(std::size_t row, std::size_t end) noexcept;
 
   std::size_t capacity() const noexcept { return capacity_; }
   /// Makes room for more. Allocates; without memory the room stays as it is.
   void make_room(std::size_t capacity) noexcept;
-  /// The sum of the squares of what is written, in its order [m^2].
-  double sum_of_squares() const noexcept { return written_.sum_of_squares; }
+  std::size_t count() const noexcept { return written_.column.size(); }  ///< contacts written
   /// What is written, in its order.
-  std::span<const ContactStretch> written() const noexcept { return written_.contacts; }
+  StretchRows written() const noexcept { return written_.rows(0, written_.start.size() - 1); }
   /// What is written of a row that has been ended.
-  std::span<const ContactStretch> row(std::size_t row) const noexcept {
-    const std::size_t begin = written_.start[row];
-    return written().subspan(begin, written_.start[row + 1] - begin);
-  }
+  StretchRows row(std::size_t row) const noexcept { return written_.rows(row, row + 1); }
+  /// The sum of the squares of what is written [m^2]. Cost: O(contacts).
+  double sum_of_squares() const noexcept;
   /// Values that a saved contact takes.
   static constexpr std::size_t kValuesPerPair = 5;
 
@@ -73,10 +65,22 @@ class ContactStretches {
                  std::size_t state_count);
 
  private:
+  /// Arrays are reserved: room that nothing uses is not touched.
   struct Table {
-    std::vector<std::size_t> start{0};     // by row; one past the last too
-    std::vector<ContactStretch> contacts;  // reserved: room that nothing uses is not touched
-    double sum_of_squares = 0.0;           // [m^2]
+    std::vector<std::size_t> start{0};  // by row; one past the last too
+    std::vector<std::uint32_t> column;
+    std::vector<std::uint32_t> state;
+    std::vector<double> phase;
+    std::vector<double> stretch[3];  // [m]
+
+    StretchRows rows(std::size_t first, std::size_t last) const noexcept;
+    template <class Do>
+    void each_array(Do change) {
+      change(column);
+      change(state);
+      change(phase);
+      for (std::vector<double>& axis : stretch) change(axis);
+    }
   };
 
   Table read_;

@@ -21,6 +21,8 @@ PairFriction::PairFriction(const NetworkDescription& description, const SetLiais
   begin_with(set.stretches, description.state_machines[set.state_machine].start);
   adopt(description.state_machines[set.state_machine], /*shows_slid=*/false);
   values_.resize(kArrayCount * block_capacity_, 0.0);
+  column_.resize(block_capacity_, 0U);
+  state_.resize(block_capacity_, 0U);
 }
 
 /// Stands as if a step had been done, with these contacts in the state of the start.
@@ -28,11 +30,12 @@ void PairFriction::begin_with(const std::vector<StartStretch>& contacts, StateIn
   stretches_.begin_step();
   for (const StartStretch& contact : contacts) {
     if (contact.member_a > 0) stretches_.end_row(contact.member_a - 1);
-    const std::uint32_t mode = 2 * start + (contact.slides ? 1U : 0U);
-    const Vec3& stretch = contact.stretch;
-    const bool kept =
-        stretches_.add({4 * contact.member_b, mode, stretch.x(), stretch.y(), stretch.z()});
-    CORDIS_ASSERT(kept);
+    const std::uint32_t column = 4 * contact.member_b;
+    const double phase = contact.slides ? kSlides : kSticks;
+    const double* const stretch = contact.stretch.data();
+    const std::size_t kept =
+        stretches_.add({&column, &start, &phase, {stretch, stretch + 1, stretch + 2}, 1});
+    CORDIS_ASSERT(kept == 1);
   }
   stretches_.end_row(row_count_ - 1);
 }
@@ -41,9 +44,11 @@ std::vector<StartStretch> PairFriction::contacts() const {
   std::vector<StartStretch> contacts;
   if (!acts()) return contacts;
   for (std::size_t row = 0; row < row_count_; ++row) {
-    for (const ContactStretch& contact : stretches_.row(row)) {
-      contacts.push_back({static_cast<std::uint32_t>(row), contact.column / 4,
-                          contact.mode % 2 != 0, Vec3(contact.x, contact.y, contact.z)});
+    const StretchRows of_row = stretches_.row(row);
+    for (std::size_t i = 0; i < of_row.count; ++i) {
+      contacts.push_back({static_cast<std::uint32_t>(row), of_row.column[i] / 4,
+                          of_row.phase[i] == kSlides,
+                          Vec3(of_row.stretch[0][i], of_row.stretch[1][i], of_row.stretch[2][i])});
     }
   }
   return contacts;
@@ -80,16 +85,19 @@ void PairFriction::take_parameters(const StateTable& table, StateIndex first_sta
 
 double PairFriction::energy_of_springs() const noexcept {
   if (is_one_) return 0.5 * terms_.front().stiffness * stretches_.sum_of_squares();
+  const StretchRows all = stretches_.written();
   double sum = 0.0;
-  for (const ContactStretch& contact : stretches_.written()) {
-    const double square = contact.x * contact.x + contact.y * contact.y + contact.z * contact.z;
-    sum += terms_[contact.mode / 2].stiffness * square;
+  for (std::size_t i = 0; i < all.count; ++i) {
+    const double x = all.stretch[0][i];
+    const double y = all.stretch[1][i];
+    const double z = all.stretch[2][i];
+    sum += terms_[all.state[i]].stiffness * (x * x + y * y + z * z);
   }
   return 0.5 * sum;
 }
 
 void PairFriction::begin_step(bool frozen) noexcept {
-  acts_now_ = acts() && (!frozen || !stretches_.written().empty());
+  acts_now_ = acts() && (!frozen || stretches_.count() > 0);
   is_frozen_ = frozen;
   if (!acts_now()) return;
   forgotten_ = 0;
@@ -104,29 +112,55 @@ FrictionRows PairFriction::rows() noexcept {
 
 const double* PairFriction::recall(PairBlock& block) noexcept {
   CORDIS_ASSERT(acts_now());
-  for (const Array which : {kStretchX, kStretchY, kStretchZ, kPhase}) {
-    std::fill_n(array(which), block.padded_count(), 0.0);
+  const StretchRows old = stretches_.old_rows(block.first(), block.last());
+  const bool same = are_as_before(old, block);
+  const std::size_t first_new = same ? block.count() : 0;
+  for (const Array which : {kStretchX, kStretchY, kStretchZ, kPhase})
+    std::fill(array(which) + first_new, array(which) + block.padded_count(), 0.0);
+  if (same) {
+    take_old(old, 0, old.count, 0);
+  } else {
+    for (std::size_t a = block.first(); a < block.last(); ++a) take_old_row(a, block);
   }
-  if (shows_slid_) std::fill_n(array(kSlid), block.padded_count(), 0.0);
-  const std::uint32_t* column = block.rows().pairs.column;
+  if (!shows_slid_) return nullptr;
+  for (std::size_t i = 0; i < block.padded_count(); ++i) {
+    const double x = array(kStretchX)[i];
+    const double y = array(kStretchY)[i];
+    const double z = array(kStretchZ)[i];
+    array(kSlid)[i] = std::sqrt(x * x + y * y + z * z);
+  }
+  return array(kSlid);
+}
+
+/// True if the pairs of a block are those that were in contact in the last step.
+bool PairFriction::are_as_before(const StretchRows& old, PairBlock& block) const noexcept {
+  if (old.count != block.count()) return false;
   for (std::size_t a = block.first(); a < block.last(); ++a) {
-    std::size_t i = block.begin_of(a);
-    const std::size_t end = block.end_of(a);
-    const ContactStretch* const old_end = stretches_.old_end(a);
-    for (const ContactStretch* old = stretches_.old_begin(a); old < old_end; ++old) {
-      while (i < end && column[i] < old->column) ++i;
-      if (i == end) break;
-      if (column[i] != old->column) continue;
-      array(kStretchX)[i] = old->x;
-      array(kStretchY)[i] = old->y;
-      array(kStretchZ)[i] = old->z;
-      array(kPhase)[i] = old->mode % 2 != 0 ? kSlides : kSticks;
-      if (!is_one_) array(kModeBefore)[i] = old->mode;
-      if (shows_slid_)
-        array(kSlid)[i] = std::sqrt(old->x * old->x + old->y * old->y + old->z * old->z);
-    }
+    if (stretches_.old_start(a) - stretches_.old_start(block.first()) != block.begin_of(a))
+      return false;
   }
-  return shows_slid_ ? array(kSlid) : nullptr;
+  return std::equal(old.column, old.column + old.count, block.rows().pairs.column);
+}
+
+/// Loads some contacts of the last step. @param to  pair of the block
+void PairFriction::take_old(const StretchRows& old, std::size_t from, std::size_t count,
+                            std::size_t to) noexcept {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    std::copy_n(old.stretch[axis] + from, count, array(kStretchX + axis) + to);
+  std::copy_n(old.phase + from, count, array(kPhase) + to);
+  if (!is_one_) std::copy_n(old.state + from, count, array(kStateBefore) + to);
+}
+
+void PairFriction::take_old_row(std::size_t row, PairBlock& block) noexcept {
+  const StretchRows old = stretches_.old_rows(row, row + 1);
+  const std::uint32_t* column = block.rows().pairs.column;
+  std::size_t i = block.begin_of(row);
+  const std::size_t end = block.end_of(row);
+  for (std::size_t from = 0; from < old.count; ++from) {
+    while (i < end && column[i] < old.column[from]) ++i;
+    if (i == end) return;
+    if (column[i] == old.column[from]) take_old(old, from, 1, i);
+  }
 }
 
 FrictionRows PairFriction::step(const PairKernel& kernel, const MemberColumns& members,
@@ -157,7 +191,7 @@ FrictionTermRows PairFriction::take_states(const StateIndex* states, StateIndex 
     part[3][i] = term.static_coefficient;
     part[4][i] = term.kinetic_coefficient;
     if (is_padding || array(kPhase)[i] == kNoContact) continue;
-    const double before = terms_[static_cast<std::size_t>(array(kModeBefore)[i]) / 2].stiffness;
+    const double before = terms_[static_cast<std::size_t>(array(kStateBefore)[i])].stiffness;
     if (!(before < term.stiffness)) continue;
     for (const Array axis : {kStretchX, kStretchY, kStretchZ})
       array(axis)[i] *= before * term.compliance;
@@ -167,20 +201,42 @@ FrictionTermRows PairFriction::take_states(const StateIndex* states, StateIndex 
 
 void PairFriction::remember(const StateIndex* states, StateIndex first_state,
                             PairBlock& block) noexcept {
-  const std::uint32_t* column = block.rows().pairs.column;
   const FrictionRows found = rows();
+  const std::uint32_t* column = block.rows().pairs.column;
+  const std::size_t before = stretches_.count();
+  const auto end_row = [&](std::size_t a, std::size_t contacts) {
+    stretches_.end_row_at(a, std::min(before + contacts, stretches_.capacity()));
+  };
   if (block.first() > 0) stretches_.end_row(block.first() - 1);  // rows left out have no contact
-  for (std::size_t a = block.first(); a < block.last(); ++a) {
-    for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
-      if (found.phase[i] == kNoContact) continue;
-      const auto state = static_cast<std::uint32_t>(state_of(states, first_state, i));
-      const std::uint32_t mode = 2 * state + (found.phase[i] == kSlides ? 1U : 0U);
-      const bool kept = stretches_.add(
-          {column[i], mode, found.stretch[0][i], found.stretch[1][i], found.stretch[2][i]});
-      if (!kept) ++forgotten_;
+  std::size_t count = 0;
+  const bool all_touch = std::find(found.phase, found.phase + block.count(), kNoContact) ==
+                         found.phase + block.count();
+  if (all_touch) {
+    count = block.count();
+    for (std::size_t a = block.first(); a < block.last(); ++a) end_row(a, block.end_of(a));
+    if (states != nullptr) {
+      for (std::size_t i = 0; i < count; ++i) state_[i] = states[i] - first_state;
     }
-    stretches_.end_row(a);
+  } else {
+    for (std::size_t a = block.first(); a < block.last(); ++a) {
+      for (std::size_t i = block.begin_of(a); i < block.end_of(a); ++i) {
+        if (found.phase[i] == kNoContact) continue;
+        column_[count] = column[i];
+        state_[count] = static_cast<std::uint32_t>(state_of(states, first_state, i));
+        found.phase[count] = found.phase[i];
+        for (double* axis : found.stretch) axis[count] = axis[i];
+        ++count;
+      }
+      end_row(a, count);
+    }
+    column = column_.data();
   }
+  const std::size_t kept = stretches_.add({column,
+                                           states == nullptr ? nullptr : state_.data(),
+                                           found.phase,
+                                           {found.stretch[0], found.stretch[1], found.stretch[2]},
+                                           count});
+  forgotten_ += static_cast<std::uint32_t>(count - kept);
 }
 
 double PairFriction::end_step() noexcept {

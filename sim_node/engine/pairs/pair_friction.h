@@ -75,8 +75,8 @@ class PairFriction {
     kForceY,
     kForceZ,
     kSlid,
-    kModeBefore,  // of ContactStretch
-    kTerms,       // the parts of FrictionTerm, one array each
+    kStateBefore,
+    kTerms,  // the parts of FrictionTerm, one array each
     kArrayCount = kTerms + 5
   };
 
@@ -90,6 +90,10 @@ class PairFriction {
   }
   FrictionTermRows take_states(const StateIndex* states, StateIndex first_state,
                                PairBlock& block) noexcept;
+  bool are_as_before(const StretchRows& old, PairBlock& block) const noexcept;
+  void take_old(const StretchRows& old, std::size_t from, std::size_t count,
+                std::size_t to) noexcept;
+  void take_old_row(std::size_t row, PairBlock& block) noexcept;
   void remember(const StateIndex* states, StateIndex first_state, PairBlock& block) noexcept;
   double energy_of_springs() const noexcept;
 
@@ -106,7 +110,9 @@ class PairFriction {
   ContactStretches stretches_;
   double stored_ = 0.0;  // [J]
   std::uint32_t forgotten_ = 0;
-  AlignedVector<double> values_;  // kArrayCount arrays of the block
+  AlignedVector<double> values_;       // kArrayCount arrays of the block
+  std::vector<std::uint32_t> column_;  // of those pairs of the block that are contacts
+  std::vector<std::uint32_t> state_;   // likewise
 };
 
 }  // namespace cordis::engine

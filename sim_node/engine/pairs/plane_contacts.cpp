@@ -8,8 +8,10 @@
 namespace cordis::engine {
 namespace {
 
-bool acts_on_planes(const NetworkDescription& network, const SetLiaison& set) {
-  if (!acts_on_surfaces(network, set) || set.set_p.size() > kMaxOfBatches) return false;
+bool is_taken(const NetworkDescription& network, const SetLiaison& set) {
+  if (!acts_on_surfaces(network, set) || set.set_p.size() > kMaxOfBatches ||
+      rubs(network.state_machines[set.state_machine]))
+    return false;
   return std::all_of(set.set_p.begin(), set.set_p.end(), [&network](std::uint32_t mat) {
     const Surface& surface = *surface_of(network, mat);
     return surface.kind == SurfaceKind::kPlane && !surface.both_sides;
@@ -20,7 +22,7 @@ bool acts_on_planes(const NetworkDescription& network, const SetLiaison& set) {
 
 PlaneContacts::PlaneContacts(const NetworkDescription& network, const SetLiaison& set)
     : range_(set.range) {
-  if (!acts_on_planes(network, set)) return;
+  if (!is_taken(network, set)) return;
   const bool has_radii = set.rest_length < 0.0;
   for (const std::uint32_t mat : set.set_p) {
     PlaneRow plane;

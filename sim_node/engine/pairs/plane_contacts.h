@@ -27,7 +27,7 @@ struct ForceOnMember {
 /// plane is near a batch, the force on a ball is kept as its part along the normal.
 class PlaneContacts {
  public:
-  /// Empty unless the set acts on planes with one side alone, kMaxOfBatches at most.
+  /// Empty unless the set acts on planes with one side alone, kMaxOfBatches at most, without friction.
   PlaneContacts(const NetworkDescription& network, const SetLiaison& set);
 
   bool empty() const noexcept { return planes_.empty(); }

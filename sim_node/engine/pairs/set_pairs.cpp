@@ -270,8 +270,8 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 
 /// True if all that a step does is in PlaneContacts. Takes the positions of the planes.
 bool SetPairs::takes_balls_at_once(const ForceColumns& columns) noexcept {
-  if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || friction_.acts() ||
-      !contacts_.empty() || !active_.are_all())
+  if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || !contacts_.empty() ||
+      !active_.are_all())
     return false;
   bool moves = false;
   for (std::size_t m = 0; m < count_p_; ++m) {
