@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "node/assert.h"
-#include "sim_node/engine/pairs/pair_kernel.h"
 #include "sim_node/engine/pairs/restored_rows.h"
 
 namespace cordis::engine {
@@ -25,6 +24,13 @@ struct SavedContact {
 SavedContact contact_at(const StretchRows& contacts, std::size_t i) noexcept {
   return {contacts.column[i], 2 * contacts.state[i] + (contacts.phase[i] == kSlides ? 1U : 0U),
           contacts.stretch[0][i], contacts.stretch[1][i], contacts.stretch[2][i]};
+}
+
+double square_at(const StretchRows& contacts, std::size_t i) noexcept {
+  const double x = contacts.stretch[0][i];
+  const double y = contacts.stretch[1][i];
+  const double z = contacts.stretch[2][i];
+  return x * x + y * y + z * z;
 }
 
 }  // namespace
@@ -90,25 +96,28 @@ void ContactStretches::make_room(std::size_t capacity) noexcept {
   capacity_ = capacity;
 }
 
-/// Eight sums by the place, which fill vector registers.
 double ContactStretches::sum_of_squares() const noexcept {
-  double sums[kPairBatch] = {};
-  const double* const x = written_.stretch[0].data();
-  const double* const y = written_.stretch[1].data();
-  const double* const z = written_.stretch[2].data();
-  const std::size_t whole = count() - count() % kPairBatch;
+  const StretchRows all = written();
+  SumByPlace sum;
+  const std::size_t whole = all.count - all.count % kPairBatch;
   for (std::size_t i = 0; i < whole; i += kPairBatch) {
-    for (std::size_t place = 0; place < kPairBatch; ++place) {
-      const std::size_t c = i + place;
-      sums[place] += x[c] * x[c] + y[c] * y[c] + z[c] * z[c];
-    }
+    for (std::size_t place = 0; place < kPairBatch; ++place)
+      sum.sums[place] += square_at(all, i + place);
   }
-  for (std::size_t c = whole; c < count(); ++c)
-    sums[c - whole] += x[c] * x[c] + y[c] * y[c] + z[c] * z[c];
-  for (std::size_t half = kPairBatch / 2; half > 0; half /= 2) {
-    for (std::size_t place = 0; place < half; ++place) sums[place] += sums[place + half];
+  for (std::size_t i = whole; i < all.count; ++i) sum.sums[i - whole] += square_at(all, i);
+  return sum.all();
+}
+
+double ContactStretches::sum_by_member() const noexcept {
+  SumByPlace sum;
+  for (std::size_t a = 0; a + 1 < written_.start.size(); ++a) {
+    const StretchRows of_row = row(a);
+    SumByPlace squares;
+    for (std::size_t i = 0; i < of_row.count; ++i)
+      squares.sums[of_row.column[i] / 4 % kPairBatch] += square_at(of_row, i);
+    sum.add(squares.sums);
   }
-  return sums[0];
+  return sum.all();
 }
 
 void ContactStretches::serialize(Archive& archive, std::size_t first_later,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_node/engine/core/archive.h"
+#include "sim_node/engine/pairs/pair_kernel.h"
 
 namespace cordis::engine {
 
@@ -18,6 +19,19 @@ struct StretchRows {
   const double* phase = nullptr;          // kSticks or kSlides
   const double* stretch[3] = {};          // [m]
   std::size_t count = 0;
+};
+
+/// A sum of 8 sums by the place, which fill vector registers.
+struct SumByPlace {
+  double sums[kPairBatch] = {};
+
+  void add(const double* values) noexcept {
+    for (std::size_t place = 0; place < kPairBatch; ++place) sums[place] += values[place];
+  }
+  double all() const noexcept {
+    return ((sums[0] + sums[4]) + (sums[2] + sums[6])) +
+           ((sums[1] + sums[5]) + (sums[3] + sums[7]));
+  }
 };
 
 /// The contacts that push, row by row. A step reads the rows of the last one and writes its own
@@ -55,6 +69,8 @@ class ContactStretches {
   StretchRows row(std::size_t row) const noexcept { return written_.rows(row, row + 1); }
   /// The sum of the squares of what is written [m^2]. Cost: O(contacts).
   double sum_of_squares() const noexcept;
+  /// Likewise: the sums of the rows, each by the number of the later member. Cost: O(contacts + rows).
+  double sum_by_member() const noexcept;
   /// Values that a saved contact takes.
   static constexpr std::size_t kValuesPerPair = 5;
 

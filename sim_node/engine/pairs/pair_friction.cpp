@@ -40,11 +40,11 @@ void PairFriction::begin_with(const std::vector<StartStretch>& contacts, StateIn
   stretches_.end_row(row_count_ - 1);
 }
 
-std::vector<StartStretch> PairFriction::contacts() const {
+std::vector<StartStretch> PairFriction::contacts_in(const ContactStretches& springs) const {
   std::vector<StartStretch> contacts;
   if (!acts()) return contacts;
   for (std::size_t row = 0; row < row_count_; ++row) {
-    const StretchRows of_row = stretches_.row(row);
+    const StretchRows of_row = springs.row(row);
     for (std::size_t i = 0; i < of_row.count; ++i) {
       contacts.push_back({static_cast<std::uint32_t>(row), of_row.column[i] / 4,
                           of_row.phase[i] == kSlides,
@@ -84,7 +84,10 @@ void PairFriction::take_parameters(const StateTable& table, StateIndex first_sta
 }
 
 double PairFriction::energy_of_springs() const noexcept {
-  if (is_one_) return 0.5 * terms_.front().stiffness * stretches_.sum_of_squares();
+  if (is_one_) {
+    return 0.5 * terms_.front().stiffness *
+           (unit_vectors_ ? stretches_.sum_by_member() : stretches_.sum_of_squares());
+  }
   const StretchRows all = stretches_.written();
   double sum = 0.0;
   for (std::size_t i = 0; i < all.count; ++i) {
@@ -247,6 +250,14 @@ double PairFriction::end_step() noexcept {
   stretches_.end_row(row_count_ - 1);
   const double before = stored_;
   stored_ = energy_of_springs();
+  return stored_ - before;
+}
+
+double PairFriction::end_step_on_planes(double squares) noexcept {
+  CORDIS_ASSERT(acts() && is_one_);
+  forgotten_ = 0;
+  const double before = stored_;
+  stored_ = 0.5 * terms_.front().stiffness * squares;
   return stored_ - before;
 }
 

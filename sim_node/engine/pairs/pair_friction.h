@@ -52,6 +52,13 @@ class PairFriction {
   /// After all blocks of a step. @return by how much the energy stored in its springs has grown [J]
   double end_step() noexcept;
 
+  /// A step that PlaneContacts have done. Precondition: acts().
+  /// @param squares  of the springs, see PlaneWorks [m^2] @return as end_step()
+  double end_step_on_planes(double squares) noexcept;
+  /// The term of all contacts. Precondition: acts(), and there is one state.
+  const FrictionTerm& term() const noexcept { return terms_.front(); }
+  ContactStretches& springs() noexcept { return stretches_; }
+
   double stored_energy() const noexcept { return stored_; }  ///< in its springs [J]
   /// Contacts of this step that could not be remembered, for lack of room.
   std::uint32_t forgotten() const noexcept { return forgotten_; }
@@ -60,7 +67,8 @@ class PairFriction {
   void make_room(std::size_t capacity) noexcept { stretches_.make_room(capacity); }
 
   /// The contacts of the last step, by their members.
-  std::vector<StartStretch> contacts() const;
+  std::vector<StartStretch> contacts() const { return contacts_in(stretches_); }
+  std::vector<StartStretch> contacts_in(const ContactStretches& springs) const;
 
   /// Nothing unless it acts.
   void serialize(Archive& archive, std::size_t first_later, std::size_t member_count);

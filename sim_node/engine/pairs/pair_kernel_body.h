@@ -542,8 +542,59 @@ struct FrictionOfBatch {
   Row kinetic;
 };
 
+/// The friction of a register of contacts.
+template <class Lanes>
+struct Rubbing {
+  typename Lanes::Row3 stretch;  // of the springs [m]
+  typename Lanes::Row3 force;    // on a, and against b [N]
+  typename Lanes::Row phase;     // kSticks or kSlides
+};
+
 /// What slides is limited, and its spring with it. Neither ever takes up more than the force takes from
 /// the motion: docs/integrators.md.
+/// @param way      of b relative to a across the normal in the last period [m]
+/// @param stretch  as the last step left it, and the phase; kNoContact of a new one
+template <class Lanes>
+[[gnu::always_inline]] inline Rubbing<Lanes> rub(const FrictionOfBatch<Lanes>& term,
+                                                 typename Lanes::Row push,
+                                                 const typename Lanes::Row3& normal,
+                                                 const typename Lanes::Row3& way,
+                                                 typename Lanes::Row3 stretch,
+                                                 typename Lanes::Row phase) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const Row one = Lanes::every(1.0);
+  const Row none = Lanes::zero();
+  const Row turned = dot<Lanes>(stretch, normal);  // the normal has turned since
+  stretch.x = stretch.x - turned * normal.x;
+  stretch.y = stretch.y - turned * normal.y;
+  stretch.z = stretch.z - turned * normal.z;
+  const auto is_known = Lanes::less(none, phase);
+  const auto slid_before = Lanes::less(Lanes::every(kSticks), phase);
+  const auto onward = Lanes::both(slid_before, Lanes::less(none, dot<Lanes>(way, stretch)));
+  stretch.x = Lanes::select(is_known, stretch.x + way.x, none);
+  stretch.y = Lanes::select(is_known, stretch.y + way.y, none);
+  stretch.z = Lanes::select(is_known, stretch.z + way.z, none);
+  Row3 tangential{term.stiffness * stretch.x + term.viscosity * way.x,
+                  term.stiffness * stretch.y + term.viscosity * way.y,
+                  term.stiffness * stretch.z + term.viscosity * way.z};
+  const Row square = dot<Lanes>(tangential, tangential);
+  const Row limit = Lanes::select(onward, term.kinetic, term.sticking) * push;
+  const auto beyond = Lanes::less(limit * limit, square);
+  if (Lanes::bits(beyond) != 0U) {
+    const Row most = term.kinetic * push;
+    const Row share = most * Lanes::inverse_or_zero(square, Lanes::sqrt(square));
+    tangential = scaled<Lanes>(tangential, Lanes::select(beyond, share, one));
+    const Row longest = Lanes::maximum(most * term.compliance, Lanes::every(kShortestStretch));
+    const Row stretch_square = dot<Lanes>(stretch, stretch);
+    const auto longer = Lanes::both(beyond, Lanes::less(longest * longest, stretch_square));
+    const Row left = longest * Lanes::inverse_or_zero(stretch_square, Lanes::sqrt(stretch_square));
+    stretch = scaled<Lanes>(stretch, Lanes::select(longer, left, one));
+  }
+  const auto slides = Lanes::either(beyond, onward);
+  return {stretch, tangential, Lanes::select(slides, Lanes::every(kSlides), Lanes::every(kSticks))};
+}
+
 template <class Lanes, bool kOfEach>
 void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
                        const PairRows& rows, const double* factor,
@@ -553,14 +604,10 @@ void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
   const PairRow row = rows.pairs;
   FrictionOfBatch<Lanes> term(terms.of_all);
   const bool unit_vectors = terms.unit_vectors;
-  const Row shortest = Lanes::every(kShortestStretch);
-  const Row sticks = Lanes::every(kSticks);
-  const Row slides = Lanes::every(kSlides);
-  const Row one = Lanes::every(1.0);
   const Row none = Lanes::zero();
   for (std::size_t i = 0; i < rows.count; i += Lanes::kWidth) {
     if constexpr (kOfEach) term = FrictionOfBatch<Lanes>(terms.of_each, i);
-    const Row reach = unit_vectors ? one : Lanes::load(row.length + i);
+    const Row reach = unit_vectors ? Lanes::every(1.0) : Lanes::load(row.length + i);
     const Row push = none - Lanes::load(factor + i) * reach;
     auto touches = Lanes::less(none, push);
     if constexpr (kOfEach) touches = Lanes::both(touches, Lanes::less(none, term.stiffness));
@@ -574,40 +621,13 @@ void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
     const Row3 normal{Lanes::load(row.x + i) * inverse, Lanes::load(row.y + i) * inverse,
                       Lanes::load(row.z + i) * inverse};
     const Row3 way = slid<Lanes>(members, rows, i, normal);
-    Row3 stretch{Lanes::load(friction.stretch[0] + i), Lanes::load(friction.stretch[1] + i),
-                 Lanes::load(friction.stretch[2] + i)};
-    const Row phase = Lanes::load(friction.phase + i);
-    const Row turned = dot<Lanes>(stretch, normal);  // the normal has turned since
-    stretch.x = stretch.x - turned * normal.x;
-    stretch.y = stretch.y - turned * normal.y;
-    stretch.z = stretch.z - turned * normal.z;
-    const auto is_known = Lanes::less(none, phase);
-    const auto slid_before = Lanes::less(sticks, phase);
-    const auto onward = Lanes::both(slid_before, Lanes::less(none, dot<Lanes>(way, stretch)));
-    stretch.x = Lanes::select(is_known, stretch.x + way.x, none);
-    stretch.y = Lanes::select(is_known, stretch.y + way.y, none);
-    stretch.z = Lanes::select(is_known, stretch.z + way.z, none);
-    Row3 tangential{term.stiffness * stretch.x + term.viscosity * way.x,
-                    term.stiffness * stretch.y + term.viscosity * way.y,
-                    term.stiffness * stretch.z + term.viscosity * way.z};
-    const Row square = dot<Lanes>(tangential, tangential);
-    const Row limit = Lanes::select(onward, term.kinetic, term.sticking) * push;
-    const auto beyond = Lanes::less(limit * limit, square);
-    if (Lanes::bits(beyond) != 0U) {
-      const Row most = term.kinetic * push;
-      const Row share = most * Lanes::inverse_or_zero(square, Lanes::sqrt(square));
-      tangential = scaled<Lanes>(tangential, Lanes::select(beyond, share, one));
-      const Row longest = Lanes::maximum(most * term.compliance, shortest);
-      const Row stretch_square = dot<Lanes>(stretch, stretch);
-      const auto longer = Lanes::both(beyond, Lanes::less(longest * longest, stretch_square));
-      const Row left =
-          longest * Lanes::inverse_or_zero(stretch_square, Lanes::sqrt(stretch_square));
-      stretch = scaled<Lanes>(stretch, Lanes::select(longer, left, one));
-    }
-    store_in<Lanes>(friction.stretch, i, touches, stretch);
-    store_in<Lanes>(friction.force, i, touches, tangential);
-    const Row next = Lanes::select(Lanes::either(beyond, onward), slides, sticks);
-    Lanes::store(friction.phase + i, Lanes::select(touches, next, none));
+    const Row3 stretch{Lanes::load(friction.stretch[0] + i), Lanes::load(friction.stretch[1] + i),
+                       Lanes::load(friction.stretch[2] + i)};
+    const Rubbing<Lanes> rubbing =
+        rub<Lanes>(term, push, normal, way, stretch, Lanes::load(friction.phase + i));
+    store_in<Lanes>(friction.stretch, i, touches, rubbing.stretch);
+    store_in<Lanes>(friction.force, i, touches, rubbing.force);
+    Lanes::store(friction.phase + i, Lanes::select(touches, rubbing.phase, none));
   }
 }
 

@@ -8,10 +8,12 @@
 namespace cordis::engine {
 namespace {
 
+constexpr std::size_t kMaxSprings = 1U << 20U;
+
 bool is_taken(const NetworkDescription& network, const SetLiaison& set) {
-  if (!acts_on_surfaces(network, set) || set.set_p.size() > kMaxOfBatches ||
-      rubs(network.state_machines[set.state_machine]))
-    return false;
+  if (!acts_on_surfaces(network, set) || set.set_p.size() > kMaxOfBatches) return false;
+  const std::size_t springs = set.set_p.size() * (set.set_p.size() + set.set_q.size());
+  if (rubs(network.state_machines[set.state_machine]) && springs > kMaxSprings) return false;
   return std::all_of(set.set_p.begin(), set.set_p.end(), [&network](std::uint32_t mat) {
     const Surface& surface = *surface_of(network, mat);
     return surface.kind == SurfaceKind::kPlane && !surface.both_sides;
@@ -53,11 +55,27 @@ PlaneContacts::PlaneContacts(const NetworkDescription& network, const SetLiaison
   held_plane_.resize(padded_count / kPairBatch, kNoPlane);
   factor_.resize(padded_count, 0.0);
   viscous_factor_.resize(padded_count, 0.0);
+  if (!rubs(network.state_machines[set.state_machine])) return;
+  phase_.resize(planes_.size() * padded_count, kNoContact);
+  for (AlignedVector<double>& axis : stretch_) axis.resize(phase_.size(), 0.0);
+  for (AlignedVector<double>& axis : friction_force_) axis.resize(padded_count, 0.0);
+}
+
+PlaneFriction PlaneContacts::friction_rows() noexcept {
+  PlaneFriction rows;
+  if (phase_.empty()) return rows;
+  rows.phase = phase_.data();
+  rows.stride = column_.size();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    rows.stretch[axis] = stretch_[axis].data();
+    rows.force[axis] = friction_force_[axis].data();
+  }
+  return rows;
 }
 
 PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
-                               const SurfaceNeighbours& surfaces, const ForceColumns& columns,
-                               const MemberValues& members) noexcept {
+                               const FrictionTerm& friction, const SurfaceNeighbours& surfaces,
+                               const ForceColumns& columns, const MemberValues& members) noexcept {
   CORDIS_ASSERT(!empty());
   CORDIS_ASSERT(surfaces.batches().count == column_.size() / kPairBatch);
   for (std::size_t a = 0; a < planes_.size(); ++a) {
@@ -67,13 +85,30 @@ PlaneWorks PlaneContacts::step(const PairKernel& kernel, const LinearPair& pair,
     std::copy_n(surfaces.centre(a).data(), 3, plane.centre);
     plane.moved = plane.normal[0] * way[0] + plane.normal[1] * way[1] + plane.normal[2] * way[2];
   }
-  const PlaneBalls balls{
-      column_.data(), is_run_.data(),         radius_.empty() ? nullptr : radius_.data(),
-      masses_.data(), surfaces.batches(),     held_plane_.data(),
-      factor_.data(), viscous_factor_.data(), planes_.size(),
-      range_};
+  PlaneFriction friction_rows = this->friction_rows();
+  friction_rows.term = friction;
+  CORDIS_ASSERT(holds_springs_ == (friction_rows.phase != nullptr));
+  const PlaneBalls balls{column_.data(),
+                         is_run_.data(),
+                         radius_.empty() ? nullptr : radius_.data(),
+                         masses_.data(),
+                         surfaces.batches(),
+                         held_plane_.data(),
+                         factor_.data(),
+                         viscous_factor_.data(),
+                         friction_rows,
+                         planes_.size(),
+                         range_};
   PlaneWorks works;
   kernel.step_planes(pair, planes_.data(), balls, columns, members, sums_.data(), works);
+  if (holds_springs_) {
+    SumByPlace squares;
+    for (PlaneSum& sum : sums_) {
+      squares.add(sum.squares);
+      std::fill_n(sum.squares, kPairBatch, 0.0);
+    }
+    works.squares = squares.all();
+  }
   return works;
 }
 
@@ -81,13 +116,54 @@ ForceOnMember PlaneContacts::force(std::size_t member, bool has_viscous) const n
   CORDIS_ASSERT(holds(member));
   const PlaneRow& plane = planes_[held_plane_[member / kPairBatch]];
   ForceOnMember force;
-  const auto find = [&plane](double factor, double* column) {
-    for (std::size_t axis = 0; axis < 3; ++axis) column[axis] = 0.0 - plane.normal[axis] * factor;
+  const auto find = [&](double factor, double* column) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double along = plane.normal[axis] * factor;
+      column[axis] = 0.0 - (phase_.empty() ? along : along + friction_force_[axis][member]);
+    }
     column[3] = factor != 0.0 ? 1.0 : 0.0;
   };
   find(factor_[member], force.all);
   if (has_viscous) find(viscous_factor_[member], force.viscous);
   return force;
+}
+
+void PlaneContacts::take_springs(const ContactStretches& springs) noexcept {
+  CORDIS_ASSERT(!phase_.empty());
+  std::fill(phase_.begin(), phase_.end(), kNoContact);
+  for (std::size_t a = 0; a < planes_.size(); ++a) {
+    const StretchRows row = springs.row(a);
+    for (std::size_t i = 0; i < row.count; ++i) {
+      const std::size_t at = a * column_.size() + row.column[i] / 4;
+      phase_[at] = row.phase[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) stretch_[axis][at] = row.stretch[axis][i];
+    }
+  }
+  holds_springs_ = true;
+}
+
+void PlaneContacts::return_springs(ContactStretches& springs) noexcept {
+  write_springs(springs);
+  holds_springs_ = false;
+}
+
+void PlaneContacts::write_springs(ContactStretches& springs) const noexcept {
+  CORDIS_ASSERT(holds_springs());
+  springs.begin_step();
+  for (std::size_t a = 0; a < planes_.size(); ++a) {
+    for (std::size_t m = planes_.size(); m < column_.size(); ++m) {
+      const std::size_t at = a * column_.size() + m;
+      if (phase_[at] == kNoContact) continue;
+      const auto column = static_cast<std::uint32_t>(4 * m);
+      const std::size_t kept = springs.add({&column,
+                                            nullptr,
+                                            &phase_[at],
+                                            {&stretch_[0][at], &stretch_[1][at], &stretch_[2][at]},
+                                            1});
+      CORDIS_ASSERT(kept == 1);  // there is room for all pairs that are listed
+    }
+    springs.end_row(a);
+  }
 }
 
 void PlaneContacts::write_forces(const MemberValues& members) noexcept {

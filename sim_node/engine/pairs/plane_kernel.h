@@ -24,18 +24,34 @@ struct PlaneRow {
   double rest_length = 0.0;  // [m]; where balls have radii, the part of the plane
 };
 
+/// Pairs of a plane whose forces are yet to be added to its sums, at most: whole batches.
+inline constexpr std::size_t kPairsOfPlane = 64;
+using ValuesOfPairs = double[kPairsOfPlane + 2 * kPairBatch];
+
 /// What the pairs of a plane give to it: their sums by the place in the batch, and the factors of pairs
 /// that are yet to be added.
 struct alignas(64) FactorSum {
-  static constexpr std::size_t kRoom = 64;  // of factors, whole batches
-  double factor[kRoom + 2 * kPairBatch];
+  ValuesOfPairs factor;
   double force[3][kPairBatch];  // x, y and z
   std::size_t partners;
 };
-struct PlaneSum {
+struct alignas(64) PlaneSum {
   FactorSum all;
   FactorSum viscous;
-  std::size_t count;  // of factors that are yet to be added
+  ValuesOfPairs friction[3];  // its forces on the plane, of pairs that are yet to be added
+  double squares
+      [kPairBatch];   // of the springs of friction, by the place of the ball in its batch [m^2]
+  std::size_t count;  // of pairs that are yet to be added
+};
+
+/// What contacts of balls and planes remember of their friction, and its forces; arrays as in PlaneBalls.
+struct PlaneFriction {
+  FrictionTerm term;
+  double* phase =
+      nullptr;  // of the members with the first plane, then with the next; see FrictionRows
+  double* stretch[3] = {};  // likewise [m]
+  std::size_t stride = 0;   // from plane to plane
+  double* force[3] = {};    // of the last step on the held plane, and against each member [N]
 };
 
 /// Members of a set in batches of 8. What has been listed since the last step, and is no longer, counts too.
@@ -53,11 +69,12 @@ struct PlaneBalls {
   const double* radius = nullptr;  // of each member [m]; null: the rest length is that of the plane
   const std::uint8_t* masses = nullptr;  // of each batch: bits of masses
   ListedBatches batches;
-  // Forces of the last step: -factor * normal of the held plane on each ball of a batch. With kNoPlane they
-  // stand in MemberValues.
+  // Forces of the last step: -factor * normal of the held plane on each ball of a batch, less friction. With
+  // kNoPlane they stand in MemberValues.
   std::uint8_t* held_plane = nullptr;  // of each batch
   double* factor = nullptr;            // tension on each member [N]
   double* viscous_factor = nullptr;    // the part of it that stores no energy [N]
+  PlaneFriction friction;
   std::size_t plane_count = 0;
   double range = 0.0;  // [m]
 };
@@ -67,6 +84,7 @@ struct PlaneWorks {
   MemberWorks last;            // by the forces of the last step
   MemberWorks now;             // and by those of this one
   std::uint32_t partners = 0;  // of a mass among the balls, at most
+  double squares = 0.0;        // of the springs of friction, see ContactStretches [m^2]
 };
 
 }  // namespace cordis::engine

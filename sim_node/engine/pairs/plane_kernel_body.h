@@ -28,42 +28,70 @@ std::size_t count_of(unsigned bits) noexcept {
   return static_cast<std::size_t>(__builtin_popcount(bits));
 }
 
-/// Adds whole batches of factors to the sums of a plane.
+/// The forces of pairs with one plane on it.
+template <class Lanes, bool kRubs>
+typename Lanes::Row3 tension_of(const typename Lanes::Row3& normal, typename Lanes::Row factor,
+                                const typename Lanes::Row3& friction) noexcept {
+  const typename Lanes::Row3 along = scaled<Lanes>(normal, factor);
+  if constexpr (!kRubs) return along;
+  return {along.x + friction.x, along.y + friction.y, along.z + friction.z};
+}
+
+/// A register of vectors, from three arrays.
 template <class Lanes>
-void add_factors(const PlaneRow& plane, std::size_t count, FactorSum& sum) noexcept {
-  using Row = typename Lanes::Row;
-  const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
+typename Lanes::Row3 vectors_at(const double* const* arrays, std::size_t i) noexcept {
+  return {Lanes::load(arrays[0] + i), Lanes::load(arrays[1] + i), Lanes::load(arrays[2] + i)};
+}
+
+/// Adds whole batches of forces to the sums of a plane.
+template <class Lanes, bool kRubs>
+void add_forces(const PlaneRow& plane, std::size_t count, const ValuesOfPairs* friction,
+                FactorSum& sum) noexcept {
+  using Row3 = typename Lanes::Row3;
+  const Row3 normal = every<Lanes>(plane.normal);
 #pragma GCC unroll 4
   for (std::size_t place = 0; place < kPairBatch; place += Lanes::kWidth) {
-    Row x = Lanes::load(sum.force[0] + place);
-    Row y = Lanes::load(sum.force[1] + place);
-    Row z = Lanes::load(sum.force[2] + place);
+    Row3 all{Lanes::load(sum.force[0] + place), Lanes::load(sum.force[1] + place),
+             Lanes::load(sum.force[2] + place)};
     for (std::size_t i = place; i < count; i += kPairBatch) {
-      const Row factor = Lanes::load(sum.factor + i);
-      x = x + normal.x * factor;
-      y = y + normal.y * factor;
-      z = z + normal.z * factor;
+      Row3 across{};
+      if constexpr (kRubs)
+        across = {Lanes::load(friction[0] + i), Lanes::load(friction[1] + i),
+                  Lanes::load(friction[2] + i)};
+      const Row3 tension = tension_of<Lanes, kRubs>(normal, Lanes::load(sum.factor + i), across);
+      all = {all.x + tension.x, all.y + tension.y, all.z + tension.z};
     }
-    Lanes::store(sum.force[0] + place, x);
-    Lanes::store(sum.force[1] + place, y);
-    Lanes::store(sum.force[2] + place, z);
+    Lanes::store(sum.force[0] + place, all.x);
+    Lanes::store(sum.force[1] + place, all.y);
+    Lanes::store(sum.force[2] + place, all.z);
   }
 }
 
-/// Adds the first factors, and moves what is left to the beginning.
+/// Moves what is left beyond the room to the beginning.
 template <class Lanes>
-void add_full_batches(const PlaneRow& plane, FactorSum& sum) noexcept {
-  add_factors<Lanes>(plane, FactorSum::kRoom, sum);
+void move_to_begin(ValuesOfPairs& values) noexcept {
   for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
-    Lanes::store(sum.factor + i, Lanes::load(sum.factor + FactorSum::kRoom + i));
+    Lanes::store(values + i, Lanes::load(values + kPairsOfPlane + i));
 }
 
-/// Adds all factors, writes the sums to a column, and empties them.
+/// Adds the first pairs.
+template <class Lanes, bool kViscous, bool kRubs>
+void add_full_batches(const PlaneRow& plane, PlaneSum& sum) noexcept {
+  add_forces<Lanes, kRubs>(plane, kPairsOfPlane, sum.friction, sum.all);
+  move_to_begin<Lanes>(sum.all.factor);
+  if constexpr (kViscous) {
+    add_forces<Lanes, kRubs>(plane, kPairsOfPlane, sum.friction, sum.viscous);
+    move_to_begin<Lanes>(sum.viscous.factor);
+  }
+  if constexpr (kRubs) {
+    for (ValuesOfPairs& axis : sum.friction) move_to_begin<Lanes>(axis);
+  }
+  sum.count -= kPairsOfPlane;
+}
+
+/// Writes a sum to a column, and empties it.
 template <class Lanes>
-void end_sum(const PlaneRow& plane, std::size_t count, FactorSum& sum, double* column) noexcept {
-  for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
-    Lanes::store_any(sum.factor + count + i, Lanes::zero());
-  add_factors<Lanes>(plane, count, sum);
+void write_sum(FactorSum& sum, double* column) noexcept {
   RowSum<Lanes> all = no_force<Lanes>();
   for (std::size_t part = 0; part < RowSum<Lanes>::kParts; ++part) {
     const std::size_t place = part * Lanes::kWidth;
@@ -79,6 +107,28 @@ void end_sum(const PlaneRow& plane, std::size_t count, FactorSum& sum, double* c
   sum.partners = 0;
 }
 
+/// Adds all pairs, writes the sums to the columns of the plane, and empties them.
+template <class Lanes, bool kViscous, bool kRubs>
+void end_sums(const PlaneRow& plane, std::size_t a, const MemberValues& members,
+              PlaneSum& sum) noexcept {
+  const auto end = [&sum](ValuesOfPairs& values) noexcept {
+    for (std::size_t i = 0; i < kPairBatch; i += Lanes::kWidth)
+      Lanes::store_any(values + sum.count + i, Lanes::zero());
+  };
+  if constexpr (kRubs) {
+    for (ValuesOfPairs& axis : sum.friction) end(axis);
+  }
+  end(sum.all.factor);
+  add_forces<Lanes, kRubs>(plane, sum.count, sum.friction, sum.all);
+  write_sum<Lanes>(sum.all, members.force + 4 * a);
+  if constexpr (kViscous) {
+    end(sum.viscous.factor);
+    add_forces<Lanes, kRubs>(plane, sum.count, sum.friction, sum.viscous);
+    write_sum<Lanes>(sum.viscous, members.viscous + 4 * a);
+  }
+  sum.count = 0;
+}
+
 /// A register of balls.
 template <class Lanes>
 struct SomeBalls {
@@ -89,29 +139,64 @@ struct SomeBalls {
   unsigned masses;           // bits
 };
 
-/// Factors of the pairs of a register of balls with one plane, 0 out of range.
+/// Forces of the pairs of a register of balls with one plane, 0 out of range.
 template <class Lanes>
-struct PlaneFactors {
-  typename Lanes::Row all = Lanes::zero();
-  typename Lanes::Row viscous = Lanes::zero();
+struct PlaneForces {
+  typename Lanes::Row factor = Lanes::zero();
+  typename Lanes::Row viscous = Lanes::zero();  // the part of the factor that stores no energy
+  typename Lanes::Row3 friction{Lanes::zero(), Lanes::zero(), Lanes::zero()};
   unsigned partners = 0;  // bits of the balls that the plane pushes or pulls
 };
 
+/// The friction of the pairs of a register of balls, from number m on, with a plane.
+/// @param along  what the distance has grown by [m]
+/// @return its forces, 0 where no pair pushes
+template <class Lanes>
+[[gnu::always_inline]] inline typename Lanes::Row3 rub_on_plane(
+    const PlaneFriction& friction, const FrictionOfBatch<Lanes>& term, std::size_t a, std::size_t m,
+    typename Lanes::Row factor, const typename Lanes::Row3& normal, typename Lanes::Row along,
+    const typename Lanes::Row3& way, double* squares) noexcept {
+  using Row = typename Lanes::Row;
+  using Row3 = typename Lanes::Row3;
+  const std::size_t at = a * friction.stride + m;
+  const Row push = Lanes::zero() - factor;
+  const auto touches = Lanes::less(Lanes::zero(), push);
+  if (Lanes::bits(touches) == 0U) {
+    Lanes::store(friction.phase + at, Lanes::zero());
+    return {Lanes::zero(), Lanes::zero(), Lanes::zero()};
+  }
+  const Row3 across{way.x - along * normal.x, way.y - along * normal.y, way.z - along * normal.z};
+  const Rubbing<Lanes> rubbing =
+      rub<Lanes>(term, push, normal, across, vectors_at<Lanes>(friction.stretch, at),
+                 Lanes::load(friction.phase + at));
+  const Row3 stretch = only<Lanes>(touches, rubbing.stretch);
+  Lanes::store(friction.stretch[0] + at, stretch.x);
+  Lanes::store(friction.stretch[1] + at, stretch.y);
+  Lanes::store(friction.stretch[2] + at, stretch.z);
+  Lanes::store(friction.phase + at, Lanes::select(touches, rubbing.phase, Lanes::zero()));
+  Lanes::store(squares, Lanes::load(squares) + dot<Lanes>(stretch, stretch));
+  return only<Lanes>(touches, rubbing.force);
+}
+
 /// Finds the pairs of a register of balls with one plane, and adds them to the sums of the plane.
-template <class Lanes, bool kViscous>
-[[gnu::always_inline]] inline PlaneFactors<Lanes> find_factors(const LinearPair& pair,
-                                                               const PlaneRow& plane, double range,
-                                                               const SomeBalls<Lanes>& balls,
-                                                               PlaneSum& sum) noexcept {
+template <class Lanes, bool kViscous, bool kRubs>
+[[gnu::always_inline]] inline PlaneForces<Lanes> find_forces(
+    const LinearPair& pair, const FrictionOfBatch<Lanes>& term, const PlaneRow& plane,
+    std::size_t a, const PlaneBalls& all_balls, std::size_t m, const SomeBalls<Lanes>& balls,
+    PlaneSum& sum) noexcept {
   using Row = typename Lanes::Row;
   const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
   const typename Lanes::Row3 centre = every<Lanes>(plane.centre);
   const Row height = dot<Lanes>(
       normal, {balls.place.x - centre.x, balls.place.y - centre.y, balls.place.z - centre.z});
-  const auto near = Lanes::both(balls.listed, Lanes::less(height, Lanes::every(range)));
+  const auto near = Lanes::both(balls.listed, Lanes::less(height, Lanes::every(all_balls.range)));
   const unsigned chosen = Lanes::bits(near);
-  PlaneFactors<Lanes> factors;
-  if (chosen == 0U) return factors;
+  PlaneForces<Lanes> forces;
+  if (chosen == 0U) {
+    if constexpr (kRubs)
+      Lanes::store(all_balls.friction.phase + a * all_balls.friction.stride + m, Lanes::zero());
+    return forces;
+  }
   Row rest_length = Lanes::every(plane.rest_length);
   if (balls.radius != nullptr) rest_length = rest_length + Lanes::load(balls.radius);
   const Row min_tension = Lanes::every(pair.min_tension);
@@ -120,24 +205,27 @@ template <class Lanes, bool kViscous>
   const Row elastic = Lanes::every(pair.stiffness) * (height - rest_length);
   const Row tension = elastic + Lanes::every(pair.viscosity_over_dt) * increment;
   const Row limited = Lanes::minimum(max_tension, Lanes::maximum(min_tension, tension));
-  factors.all = Lanes::select(near, limited, Lanes::zero());
+  forces.factor = Lanes::select(near, limited, Lanes::zero());
   const std::size_t count = sum.count;
-  Lanes::pack(sum.all.factor + count, factors.all, chosen);
-  factors.partners = partners_of<Lanes>(factors.all);
-  sum.all.partners += count_of<Lanes>(factors.partners);
+  Lanes::pack(sum.all.factor + count, forces.factor, chosen);
+  forces.partners = partners_of<Lanes>(forces.factor);
+  sum.all.partners += count_of<Lanes>(forces.partners);
   if constexpr (kViscous) {
     const Row stored = Lanes::minimum(max_tension, Lanes::maximum(min_tension, elastic));
-    factors.viscous = Lanes::select(near, limited - stored, Lanes::zero());
-    Lanes::pack(sum.viscous.factor + count, factors.viscous, chosen);
-    sum.viscous.partners += count_of<Lanes>(partners_of<Lanes>(factors.viscous));
+    forces.viscous = Lanes::select(near, limited - stored, Lanes::zero());
+    Lanes::pack(sum.viscous.factor + count, forces.viscous, chosen);
+    sum.viscous.partners += count_of<Lanes>(partners_of<Lanes>(forces.viscous));
+  }
+  if constexpr (kRubs) {
+    forces.friction = rub_on_plane<Lanes>(all_balls.friction, term, a, m, forces.factor, normal,
+                                          increment, balls.way, sum.squares + m % kPairBatch);
+    Lanes::pack(sum.friction[0] + count, forces.friction.x, chosen);
+    Lanes::pack(sum.friction[1] + count, forces.friction.y, chosen);
+    Lanes::pack(sum.friction[2] + count, forces.friction.z, chosen);
   }
   sum.count = count + count_of<Lanes>(chosen);
-  if (sum.count >= FactorSum::kRoom) {
-    add_full_batches<Lanes>(plane, sum.all);
-    if constexpr (kViscous) add_full_batches<Lanes>(plane, sum.viscous);
-    sum.count -= FactorSum::kRoom;
-  }
-  return factors;
+  if (sum.count >= kPairsOfPlane) add_full_batches<Lanes, kViscous, kRubs>(plane, sum);
+  return forces;
 }
 
 /// Adds 8 works to the sums of their places.
@@ -188,11 +276,12 @@ typename Lanes::Row3 less_neighbours(const double* columns) noexcept {
 }
 
 /// Enters what the last forces of a register of balls have done, from member m on, place i of its batch.
-template <class Lanes, bool kViscous>
+template <class Lanes, bool kViscous, bool kRubs>
 [[gnu::always_inline]] inline void end_last_forces(const PlaneRow* planes, const PlaneBalls& balls,
                                                    const MemberValues& members, std::size_t m,
                                                    std::size_t i, const typename Lanes::Row3& way,
                                                    WorksOfStep<Lanes>& works) noexcept {
+  using Row3 = typename Lanes::Row3;
   const std::size_t held = balls.held_plane[m / kPairBatch];
   if (held == kNoPlane) {
     works.last.enter(i, less_neighbours<Lanes>(members.force + 4 * m), way);
@@ -200,10 +289,14 @@ template <class Lanes, bool kViscous>
       works.last_viscous.enter(i, less_neighbours<Lanes>(members.viscous + 4 * m), way);
     return;
   }
-  const typename Lanes::Row3 normal = every<Lanes>(planes[held].normal);
-  works.last.enter(i, scaled<Lanes>(normal, Lanes::load(balls.factor + m)), way);
-  if constexpr (kViscous)
-    works.last_viscous.enter(i, scaled<Lanes>(normal, Lanes::load(balls.viscous_factor + m)), way);
+  const Row3 normal = every<Lanes>(planes[held].normal);
+  Row3 friction{};
+  if constexpr (kRubs) friction = vectors_at<Lanes>(balls.friction.force, m);
+  const auto tension = [&](const double* factors) noexcept {
+    return tension_of<Lanes, kRubs>(normal, Lanes::load(factors + m), friction);
+  };
+  works.last.enter(i, tension(balls.factor), way);
+  if constexpr (kViscous) works.last_viscous.enter(i, tension(balls.viscous_factor), way);
 }
 
 /// Takes the places of the balls of a batch that are listed.
@@ -225,23 +318,30 @@ template <class Lanes>
   }
 }
 
-/// Finds the forces of a register of balls with one plane, and keeps their factors.
+/// Finds the forces of a register of balls with one plane, and keeps them.
 /// @return less the forces
-template <class Lanes, bool kViscous>
+template <class Lanes, bool kViscous, bool kRubs>
 [[gnu::always_inline]] inline typename Lanes::Row3 step_with_one_plane(
-    const LinearPair& pair, const PlaneRow& plane, const PlaneBalls& balls, std::size_t m,
-    std::size_t i, const SomeBalls<Lanes>& some, PlaneSum& sum, WorksOfStep<Lanes>& works,
+    const LinearPair& pair, const FrictionOfBatch<Lanes>& term, const PlaneRow* planes,
+    std::size_t a, const PlaneBalls& balls, std::size_t m, std::size_t i,
+    const SomeBalls<Lanes>& some, PlaneSum* sums, WorksOfStep<Lanes>& works,
     std::uint32_t& largest_partners) noexcept {
-  const PlaneFactors<Lanes> factors =
-      find_factors<Lanes, kViscous>(pair, plane, balls.range, some, sum);
-  const typename Lanes::Row3 normal = every<Lanes>(plane.normal);
-  Lanes::store(balls.factor + m, factors.all);
-  if constexpr (kViscous) {
-    Lanes::store(balls.viscous_factor + m, factors.viscous);
-    works.now_viscous.enter(i, scaled<Lanes>(normal, factors.viscous), some.way);
+  const PlaneForces<Lanes> forces =
+      find_forces<Lanes, kViscous, kRubs>(pair, term, planes[a], a, balls, m, some, sums[a]);
+  const typename Lanes::Row3 normal = every<Lanes>(planes[a].normal);
+  Lanes::store(balls.factor + m, forces.factor);
+  if constexpr (kRubs) {
+    Lanes::store(balls.friction.force[0] + m, forces.friction.x);
+    Lanes::store(balls.friction.force[1] + m, forces.friction.y);
+    Lanes::store(balls.friction.force[2] + m, forces.friction.z);
   }
-  if (largest_partners == 0 && (factors.partners & some.masses) != 0U) largest_partners = 1;
-  return scaled<Lanes>(normal, factors.all);
+  if constexpr (kViscous) {
+    Lanes::store(balls.viscous_factor + m, forces.viscous);
+    works.now_viscous.enter(i, tension_of<Lanes, kRubs>(normal, forces.viscous, forces.friction),
+                            some.way);
+  }
+  if (largest_partners == 0 && (forces.partners & some.masses) != 0U) largest_partners = 1;
+  return tension_of<Lanes, kRubs>(normal, forces.factor, forces.friction);
 }
 
 /// Forces on a register of balls, and their partners.
@@ -251,10 +351,10 @@ struct ForcesOnBalls {
   typename Lanes::Row partners = Lanes::zero();
 
   /// A factor that is 0 counts for no partner.
-  void take_pairs(const typename Lanes::Row3& normal, typename Lanes::Row factor) noexcept {
-    force.x = force.x - normal.x * factor;
-    force.y = force.y - normal.y * factor;
-    force.z = force.z - normal.z * factor;
+  void take_pairs(const typename Lanes::Row3& tension, typename Lanes::Row factor) noexcept {
+    force.x = force.x - tension.x;
+    force.y = force.y - tension.y;
+    force.z = force.z - tension.z;
     partners = partners - less_one<Lanes>(Lanes::not_equal(factor, Lanes::zero()));
   }
   typename Lanes::Row3 less_force() const noexcept {
@@ -263,21 +363,24 @@ struct ForcesOnBalls {
 };
 
 /// Likewise with several planes, whose forces are summed; keeps the sums.
-template <class Lanes, bool kViscous>
-typename Lanes::Row3 step_with_planes(const LinearPair& pair, const PlaneRow* planes,
-                                      const PlaneBalls& balls, std::size_t m, std::size_t i,
-                                      const SomeBalls<Lanes>& some, PlaneSum* sums,
-                                      const MemberValues& members, WorksOfStep<Lanes>& works,
+template <class Lanes, bool kViscous, bool kRubs>
+typename Lanes::Row3 step_with_planes(const LinearPair& pair, const FrictionOfBatch<Lanes>& term,
+                                      const PlaneRow* planes, const PlaneBalls& balls,
+                                      std::size_t m, std::size_t i, const SomeBalls<Lanes>& some,
+                                      PlaneSum* sums, const MemberValues& members,
+                                      WorksOfStep<Lanes>& works,
                                       std::uint32_t& largest_partners) noexcept {
   ForcesOnBalls<Lanes> on;
   ForcesOnBalls<Lanes> viscous_on;
   for (std::uint64_t left = balls.batches.surfaces[m / kPairBatch]; left != 0U; left &= left - 1U) {
-    const auto plane = static_cast<std::size_t>(__builtin_ctzll(left));
-    const PlaneFactors<Lanes> factors =
-        find_factors<Lanes, kViscous>(pair, planes[plane], balls.range, some, sums[plane]);
-    const typename Lanes::Row3 normal = every<Lanes>(planes[plane].normal);
-    on.take_pairs(normal, factors.all);
-    if constexpr (kViscous) viscous_on.take_pairs(normal, factors.viscous);
+    const auto a = static_cast<std::size_t>(__builtin_ctzll(left));
+    const PlaneForces<Lanes> forces =
+        find_forces<Lanes, kViscous, kRubs>(pair, term, planes[a], a, balls, m, some, sums[a]);
+    const typename Lanes::Row3 normal = every<Lanes>(planes[a].normal);
+    on.take_pairs(tension_of<Lanes, kRubs>(normal, forces.factor, forces.friction), forces.factor);
+    if constexpr (kViscous)
+      viscous_on.take_pairs(tension_of<Lanes, kRubs>(normal, forces.viscous, forces.friction),
+                            forces.viscous);
   }
   Lanes::store_columns(members.force + 4 * m, on.force, on.partners);
   if constexpr (kViscous) {
@@ -293,7 +396,7 @@ typename Lanes::Row3 step_with_planes(const LinearPair& pair, const PlaneRow* pl
   return on.less_force();
 }
 
-template <class Lanes, bool kViscous>
+template <class Lanes, bool kViscous, bool kRubs>
 void step_near_planes(const LinearPair& law, const PlaneRow* planes, const PlaneBalls& all_balls,
                       const ForceColumns& mats, const MemberValues& all_members, PlaneSum* sums,
                       PlaneWorks& result) noexcept {
@@ -304,6 +407,7 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
   const double* const position = mats.position;
   const double* const delayed = mats.delayed;
   double* const force = mats.force;
+  const FrictionOfBatch<Lanes> term(balls.friction.term);
   WorksOfStep<Lanes> works;
   std::uint32_t partners = 0;
 
@@ -328,14 +432,14 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
           only<Lanes>(listed, {place.x - before.x, place.y - before.y, place.z - before.z}),
           balls.radius == nullptr ? nullptr : balls.radius + m,
           balls.masses[batch] >> i & first_lanes<Lanes>(Lanes::kWidth)};
-      end_last_forces<Lanes, kViscous>(planes, balls, members, m, i, some.way, works);
+      end_last_forces<Lanes, kViscous, kRubs>(planes, balls, members, m, i, some.way, works);
       // 0 of balls that are not listed, and no force on a MAT is -0
       const Row3 taken =
           is_one_plane
-              ? step_with_one_plane<Lanes, kViscous>(pair, planes[first_plane], balls, m, i, some,
-                                                     sums[first_plane], works, partners)
-              : step_with_planes<Lanes, kViscous>(pair, planes, balls, m, i, some, sums, members,
-                                                  works, partners);
+              ? step_with_one_plane<Lanes, kViscous, kRubs>(pair, term, planes, first_plane, balls,
+                                                            m, i, some, sums, works, partners)
+              : step_with_planes<Lanes, kViscous, kRubs>(pair, term, planes, balls, m, i, some,
+                                                         sums, members, works, partners);
       works.now.enter(i, taken, some.way);
       if (is_run) {
         Lanes::subtract_from_neighbours(force + *column, taken);
@@ -348,12 +452,8 @@ void step_near_planes(const LinearPair& law, const PlaneRow* planes, const Plane
     take_places<Lanes>(balls, batch, position, members.position);
   }
 
-  for (std::size_t a = 0; a < balls.plane_count; ++a) {
-    end_sum<Lanes>(planes[a], sums[a].count, sums[a].all, members.force + 4 * a);
-    if constexpr (kViscous)
-      end_sum<Lanes>(planes[a], sums[a].count, sums[a].viscous, members.viscous + 4 * a);
-    sums[a].count = 0;
-  }
+  for (std::size_t a = 0; a < balls.plane_count; ++a)
+    end_sums<Lanes, kViscous, kRubs>(planes[a], a, members, sums[a]);
   works.last.write(result.last.all);
   works.now.write(result.now.all);
   if constexpr (kViscous) {
@@ -367,10 +467,12 @@ template <class Lanes>
 void step_planes(const LinearPair& pair, const PlaneRow* planes, const PlaneBalls& balls,
                  const ForceColumns& mats, const MemberValues& members, PlaneSum* sums,
                  PlaneWorks& works) noexcept {
-  if (members.viscous == nullptr) {
-    step_near_planes<Lanes, false>(pair, planes, balls, mats, members, sums, works);
+  if (balls.friction.phase != nullptr) {  // its forces store no energy
+    step_near_planes<Lanes, true, true>(pair, planes, balls, mats, members, sums, works);
+  } else if (members.viscous != nullptr) {
+    step_near_planes<Lanes, true, false>(pair, planes, balls, mats, members, sums, works);
   } else {
-    step_near_planes<Lanes, true>(pair, planes, balls, mats, members, sums, works);
+    step_near_planes<Lanes, false, false>(pair, planes, balls, mats, members, sums, works);
   }
 }
 

@@ -83,6 +83,12 @@ std::size_t chunk_of(std::size_t member_count) {
 
 constexpr double kNoRange = std::numeric_limits<double>::infinity();
 
+/// The works count all of friction as taken; its springs give some of it back.
+void add_stored(double stored, StepEnergy& energy) noexcept {
+  energy.elastic += stored;
+  energy.dissipated -= stored;
+}
+
 }  // namespace
 
 SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
@@ -155,7 +161,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
 }
 
 void SetPairs::adopt(const StateTable& table) {
-  write_forces();
+  end_planes();
   state_machines_.adopt(table);
   friction_.adopt(table.state_machines()[state_machine_], table.needs(Quantity::kSlid));
   first_state_ = table.first_state(state_machine_);
@@ -261,7 +267,7 @@ PairRest SetPairs::rest() const noexcept {
 
 StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& columns,
                                 ThreadTeam* team) noexcept {
-  if (takes_balls_at_once(columns)) return add_plane_forces(columns);
+  if (takes_balls_at_once(step, columns)) return add_plane_forces(columns);
   StepEnergy energy = take_positions(columns, team);
   refresh(team);
   energy += add_pair_forces(step, columns, team);
@@ -269,9 +275,10 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 }
 
 /// True if all that a step does is in PlaneContacts. Takes the positions of the planes.
-bool SetPairs::takes_balls_at_once(const ForceColumns& columns) noexcept {
-  if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || !contacts_.empty() ||
-      !active_.are_all())
+bool SetPairs::takes_balls_at_once(const PairStep& step, const ForceColumns& columns) noexcept {
+  const bool frozen = step.frozen && friction_.acts();
+  if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || frozen ||
+      !contacts_.empty() || !active_.are_all())
     return false;
   bool moves = false;
   for (std::size_t m = 0; m < count_p_; ++m) {
@@ -284,13 +291,31 @@ bool SetPairs::takes_balls_at_once(const ForceColumns& columns) noexcept {
 /// The planes do not move, so their forces do no work.
 StepEnergy SetPairs::add_plane_forces(const ForceColumns& columns) noexcept {
   measure_due(columns.position, column_, /*may_leave=*/true, [](std::size_t) {});
-  const PlaneWorks works = planes_.step(kernel_, linear_, surfaces_, columns, values_from(0));
+  if (friction_.acts() && !planes_.holds_springs()) planes_.take_springs(friction_.springs());
+  const FrictionTerm friction = friction_.acts() ? friction_.term() : FrictionTerm{};
+  const PlaneWorks works =
+      planes_.step(kernel_, linear_, friction, surfaces_, columns, values_from(0));
   surfaces_.renew_batches();
   for (std::size_t m = 0; m < count_p_; ++m) give_force(m, columns);
   largest_partners_.of_q = std::max(largest_partners_.of_q, works.partners);
   StepEnergy energy = energy_of(works.last);
-  energy += energy_of(works.now);
+  StepEnergy now = energy_of(works.now);
+  if (friction_.acts()) add_stored(friction_.end_step_on_planes(works.squares), now);
+  energy += now;
   return energy;
+}
+
+/// Forces and springs of friction stand in the members and in PairFriction again.
+void SetPairs::end_planes() noexcept {
+  planes_.write_forces(values_from(0));
+  if (planes_.holds_springs()) planes_.return_springs(friction_.springs());
+}
+
+std::vector<StartStretch> SetPairs::contact_stretches() const {
+  if (!planes_.holds_springs()) return friction_.contacts();
+  ContactStretches springs(count_p_, friction_.capacity());
+  planes_.write_springs(springs);
+  return friction_.contacts_in(springs);
 }
 
 bool SetPairs::refresh(ThreadTeam* team) noexcept {
@@ -326,10 +351,7 @@ StepEnergy SetPairs::add_pair_forces(const PairStep& step, const ForceColumns& c
   energy.switching += state_machines_.switching();
   energy.switching += state_machines_.parameter_energy() + parameter_energy_of_zero(step);
   if (!friction_.acts_now()) return energy;
-  // The works count all of friction as taken; its springs give some of it back.
-  const double stored = friction_.end_step();
-  energy.elastic += stored;
-  energy.dissipated -= stored;
+  add_stored(friction_.end_step(), energy);
   return energy;
 }
 
@@ -713,7 +735,7 @@ StepEnergy SetPairs::take_visited(const ForceColumns& columns, Visit visit) noex
 
 /// Gathers the members, and ends the account of the last forces.
 StepEnergy SetPairs::take_positions(const ForceColumns& columns, ThreadTeam* team) noexcept {
-  write_forces();
+  end_planes();
   if (!works_.empty() && active_.are_all()) {
     visit_chunks(team, [&](std::size_t chunk) noexcept {
       works_[chunk] =
@@ -993,7 +1015,7 @@ void SetPairs::visit_bound_pairs(const StateTable& table, VisitBoundPair visit, 
 
 /// The elastic forces stay: their work up to step 0 belongs to the energy stored there.
 void SetPairs::start() noexcept {
-  write_forces();
+  end_planes();
   constexpr std::size_t kPartners = 3;  // of the 4 values of a column: no force
   for (std::size_t i = 0; i < viscous_.size(); ++i) {
     if (i % 4 != kPartners) force_[i] -= viscous_[i];
@@ -1095,7 +1117,7 @@ bool SetPairs::is_overflowed() const noexcept {
 }
 
 void SetPairs::serialize(Archive& archive, const StateTable& table) {
-  write_forces();
+  end_planes();
   const std::size_t value_count = 4 * (padding_begin() + kPairBatch);
   for (AlignedVector<double>* values : {&force_, &viscous_, &position_})
     archive.reals(std::span(*values).first(value_count));

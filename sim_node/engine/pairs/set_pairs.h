@@ -108,7 +108,7 @@ class SetPairs {
   void visit_bound_pairs(const StateTable& table, VisitBoundPair visit, void* owner) const;
 
   /// The contacts with friction of the last step, by their members. Allocates.
-  std::vector<StartStretch> contact_stretches() const { return friction_.contacts(); }
+  std::vector<StartStretch> contact_stretches() const;
 
   /// The most since the last forget_partners(). Of what rests, as it came to rest.
   PartnerCount largest_partners() const noexcept { return largest_partners_; }
@@ -231,8 +231,8 @@ class SetPairs {
   void list_surfaces() noexcept;
   ForceOnMember force_on(std::size_t member) const noexcept;
   /// From here on the forces of the last step stand in force_ and viscous_.
-  void write_forces() noexcept { planes_.write_forces(values_from(0)); }
-  bool takes_balls_at_once(const ForceColumns& columns) noexcept;
+  void end_planes() noexcept;
+  bool takes_balls_at_once(const PairStep& step, const ForceColumns& columns) noexcept;
   StepEnergy add_plane_forces(const ForceColumns& columns) noexcept;
   void pad_at_surfaces() noexcept;
   /// Pairs that are alike where they come into range.
