@@ -93,6 +93,16 @@ bool Hardware::is_silent(std::int64_t now) const noexcept {
 void Hardware::stop() noexcept {
   coupling_n_.fill(0.0);
   if (contact_ == Contact::kPresent) ask({});
+  if (contact_ == Contact::kLost && may_hold_force_) {
+    next_try_nsec_ = 0;
+    try_to_open(node::monotonic_nsec());
+  }
+  if (contact_ == Contact::kGreeting) release_motors();
+}
+
+/// The motors of a board that does not answer.
+void Hardware::release_motors() noexcept {
+  if (may_hold_force_) wire_->release();
 }
 
 void Hardware::try_to_open(std::int64_t now) noexcept {
@@ -109,6 +119,7 @@ void Hardware::try_to_open(std::int64_t now) noexcept {
 
 void Hardware::greet_now(std::int64_t now) noexcept {
   next_greeting_nsec_ = now + kGreetAgainAfter;
+  release_motors();
   begin();
   Message message;
   const std::size_t count = greet(message);
@@ -135,9 +146,11 @@ void Hardware::welcome() noexcept {
 void Hardware::ask(const AxisValues& force_n) noexcept {
   Message message;
   const std::size_t count = request(force_n, message);
+  asks_force_ = force_n != AxisValues{};
+  may_hold_force_ = may_hold_force_ || asks_force_;
   static_cast<void>(wire_->send({message.data(), count}));  // the next request stands for it
   Guardian* const guardian = Guardian::of_process();
-  if (guardian != nullptr) guardian->record_frame(force_n != AxisValues{});
+  if (guardian != nullptr) guardian->record_frame(asks_force_);
   if (!wire_->is_open()) lose();
 }
 
@@ -186,12 +199,14 @@ bool Hardware::take(std::span<const std::uint8_t> bytes) noexcept {
     if (sampled || received == Received::kGreeted) last_sample_nsec_ = node::monotonic_nsec();
     bad_ += received == Received::kBad;
     found = found || received == Received::kSample;
+    may_hold_force_ = may_hold_force_ && (asks_force_ || received != Received::kSample);
   }
   return found;
 }
 
 void Hardware::lose() noexcept {
   if (contact_ == Contact::kPresent) wire_->release();
+  if (contact_ == Contact::kGreeting) release_motors();
   wire_->close();
   contact_ = Contact::kLost;
   coupling_n_.fill(0.0);

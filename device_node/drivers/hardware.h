@@ -35,7 +35,9 @@ struct HardwareSettings {
 /// request. The loop never waits for it longer than answer_within_s, and reads no more than a few
 /// kB a period, however much comes. A device that falls silent is lost: the wire is closed, opened
 /// again every retry_s, and the driver goes on by itself. What comes late, but before the next
-/// request, is taken as it comes. Before a wire is closed, the motors are given no force.
+/// request, is taken as it comes. Before a wire is closed, the motors are given no force. A board that
+/// fell silent under a force may not have taken that in. So it is given no force again with each
+/// greeting, and when this node ends, until it answers.
 ///
 /// A board that says that it has let go of its motors is given no force until it has not said so
 /// for 0.1 s. So is one whose forces the guardian has taken away. Meanwhile write() returns false.
@@ -113,6 +115,7 @@ class Hardware : public Driver {
   void ask(const AxisValues& force_n) noexcept;
   bool listen(std::int64_t until) noexcept;
   bool take(std::span<const std::uint8_t> bytes) noexcept;
+  void release_motors() noexcept;
   void lose() noexcept;
   AxisValues coupling_forces(const AxisValues& wanted_m) noexcept;
 
@@ -125,6 +128,8 @@ class Hardware : public Driver {
   bool greets_ = true;  // it has yet to say what it is
   bool is_let_go_ = false;
   std::int64_t let_go_until_nsec_ = 0;
+  bool asks_force_ = false;          // the newest request
+  bool may_hold_force_ = false;      // no answer to a request without a force since one with it
   std::uint32_t releases_seen_ = 0;  // of the guardian
   std::int64_t next_try_nsec_ = 0;
   std::int64_t next_greeting_nsec_ = 0;

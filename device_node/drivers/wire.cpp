@@ -66,7 +66,7 @@ class SerialLine final : public Wire {
     line.c_cflag &= ~static_cast<tcflag_t>(HUPCL | CRTSCTS);  // no reset at close, no blocking
     cfsetspeed(&line, baud_);
     tcsetattr(file_, TCSANOW, &line);
-    tcflush(file_, TCIOFLUSH);
+    tcflush(file_, TCIFLUSH);  // what waits to go out may take the force from the motors
     watch_arrivals();
     return true;
   }

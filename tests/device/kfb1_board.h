@@ -40,6 +40,7 @@ class Kfb1Board {
       return static_cast<std::uint32_t>((node::monotonic_nsec() - board_->started_nsec_) / 1000);
     };
     what.send = [](const std::uint8_t* bytes, std::uint8_t count) {
+      if (board_->is_mute) return;
       if (board_->miscounts) return board_->say_with_wrong_check(bytes, count);
       board_->plug.say({bytes, count});
     };
@@ -52,6 +53,8 @@ class Kfb1Board {
   std::atomic<bool> miscounts{
       false};                         ///< its frames are whole, and their checksums those of others
   std::atomic<int> event{0};          ///< code that it goes on to send; 0: none
+  std::atomic<bool> is_deaf{false};   ///< it takes no byte in
+  std::atomic<bool> is_mute{false};   ///< it says nothing
   std::atomic<bool> restarts{false};  ///< at once; it takes that back itself
   std::atomic<double> deaf_for_s{0.0};  ///< after the first byte that comes, as while it resets
   ForceLog log;
@@ -73,6 +76,7 @@ class Kfb1Board {
   void receive(std::uint8_t byte) {
     const std::int64_t now = node::monotonic_nsec();
     if (first_byte_nsec_ == 0) first_byte_nsec_ = now;
+    if (is_deaf) return;
     if (static_cast<double>(now - first_byte_nsec_) * 1e-9 >= deaf_for_s) {
       kfb1_byte(&firmware_, byte);
     }

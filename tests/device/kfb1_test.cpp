@@ -320,6 +320,46 @@ TEST_F(Kfb1Test, LetsGoWhileTheBoardReportsAnEmergencyStopAndLogsOrCountsEachOne
   }
 }
 
+/// The board did not take in that its force ended, and the node ends before it answers again.
+TEST_F(Kfb1Test, ABoardThatFellSilentUnderAForceKeepsNoneWhenTheNodeEnds) {
+  for (const bool is_closed : {false, true}) {  // the line, at that moment
+    Kfb1Board board;
+    board.has_watchdog = false;
+    board.plug.into_serial_line(link());
+    const auto key =
+        driver("kfb1", port(), layout_of(2), is_closed ? "retry_s: 30" : "retry_s: 0.01");
+    key->start(Role::kMass);
+    ASSERT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return there && board.forces[0] > 0; }));
+    board.is_deaf = board.is_mute = true;
+    const Contact away = is_closed ? Contact::kLost : Contact::kGreeting;
+    ASSERT_TRUE(until(*key, {5.0, 0.0},
+                      [&](bool) { return dynamic_cast<Hardware&>(*key).contact() == away; }));
+    ASSERT_GT(board.forces[0], 0);
+
+    board.is_deaf = false;
+    key->stop();
+
+    EXPECT_TRUE(test::eventually([&] { return board.forces[0] == 0; })) << is_closed;
+  }
+}
+
+TEST_F(Kfb1Test, ABoardThatIsGreetedAgainIsGivenNoForceFirst) {
+  Kfb1Board board;
+  board.has_watchdog = false;
+  board.plug.into_serial_line(link());
+  const auto key = keys_at(port());
+  key->start(Role::kMass);
+  ASSERT_TRUE(until(*key, {5.0, 0.0}, [&](bool there) { return there && board.forces[0] > 0; }));
+  board.is_deaf = board.is_mute = true;
+  ASSERT_TRUE(until(*key, {5.0, 0.0}, [&](bool) {
+    return dynamic_cast<Hardware&>(*key).contact() == Contact::kGreeting;
+  }));
+
+  board.is_deaf = false;
+
+  EXPECT_TRUE(until(*key, {5.0, 0.0}, [&](bool) { return board.forces[0] == 0; }));
+}
+
 TEST_F(Kfb1Test, LetsGoForAPeriodWhenTheWatchdogOfTheBoardHasFired) {
   const CapturedLog log;
   Kfb1Board board;

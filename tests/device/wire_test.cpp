@@ -140,6 +140,27 @@ TEST_F(BlockedLine, TheReleaseFrameGoesBeforeAllThatWaits) {
   EXPECT_EQ(Bytes(all.end() - 3, all.end()), (Bytes{0xa5, 0x5a, 0xff}));
 }
 
+/// A board that reads late gets the release frame of a line that was closed and opened again since.
+TEST_F(BlockedLine, TheReleaseFrameOutlivesTheNextOpening) {
+  ReleaseFrame release;
+  release.bytes = {0xa5, 0x5a, 0xff};
+  release.length = 3;
+  wire_->set_release(release);
+  ASSERT_TRUE(wire_->open());
+  ASSERT_NE(fill(), 0);
+  wire_->release();
+
+  wire_->close();
+  ASSERT_TRUE(wire_->open());
+
+  Bytes all;
+  EXPECT_TRUE(test::eventually([&] {
+    const Bytes more = read_all();
+    all.insert(all.end(), more.begin(), more.end());
+    return all.size() >= 3 && Bytes(all.end() - 3, all.end()) == Bytes{0xa5, 0x5a, 0xff};
+  }));
+}
+
 /// A system that refuses an epoll, which a line does without.
 class LineWithoutEdges : public BlockedLine {
  protected:
