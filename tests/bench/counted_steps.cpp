@@ -73,10 +73,11 @@ NetworkDescription string_of_masses() {
 }
 
 /// Balls on a plane, each pressed into it by its weight, with viscosity.
-NetworkDescription balls_on_a_plane(double height = 0.0099) {
+/// @param along  gravity along the plane, of balls with friction [m/s^2]; 0: without friction
+NetworkDescription balls_on_a_plane(double height = 0.0099, double along = 0.0) {
   NetworkDescription network;
   network.step = 1e-4;
-  network.gravity = cordis::engine::Vec3(0.0, -9.81, 0.0);
+  network.gravity = cordis::engine::Vec3(along, -9.81, 0.0);
   cordis::engine::SetLiaison set;
   for (std::uint32_t i = 0; i < 2000; ++i) {
     cordis::engine::Mat& mat = network.mats.emplace_back();
@@ -94,6 +95,7 @@ NetworkDescription balls_on_a_plane(double height = 0.0099) {
   contact.states[0].stiffness = 1000.0;
   contact.states[0].viscosity = 0.1;
   contact.states[0].pulls = false;
+  if (along > 0.0) contact.friction = {0.5, 0.4, 1000.0, 0.1};
   network.state_machines.push_back(contact);
   set.set_p.push_back(plane.mat);
   set.range = 0.01;
@@ -104,6 +106,14 @@ NetworkDescription balls_on_a_plane(double height = 0.0099) {
 
 NetworkDescription balls_above_a_plane() {
   return balls_on_a_plane(1.0);
+}
+
+NetworkDescription balls_that_stick() {
+  return balls_on_a_plane(0.0099, 3.0);
+}
+
+NetworkDescription balls_that_slide() {
+  return balls_on_a_plane(0.0099, 6.0);
 }
 
 Shared by_cordis(const NetworkDescription& network) {
@@ -157,6 +167,8 @@ const std::vector<Scene>& scenes() {
       {"links_with_expressions", [] { return net_of(cordis::bench::kExpression); }},
       {"balls_on_a_plane", [] { return by_cordis(balls_on_a_plane()); }},
       {"balls_above_a_plane", [] { return by_cordis(balls_above_a_plane()); }},
+      {"balls_that_stick", [] { return by_cordis(balls_that_stick()); }},
+      {"balls_that_slide", [] { return by_cordis(balls_that_slide()); }},
       {"melt", [] { return cordis::bench::melt(5); }},
       {"large_melt", [] { return cordis::bench::melt(11); }}};
   return all;

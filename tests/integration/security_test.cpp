@@ -127,7 +127,7 @@ TEST_P(SecuredClock, RunsWithAllNodesAndIsRecorded) {
   EXPECT_EQ(launcher.wait(kPatience), 0) << launcher.output();
   EXPECT_NE(launcher.output().find(", secured"), std::string::npos) << launcher.output();
   const Ended info = SecuredFolder::ended({"info", take});
-  // In real time a machine that stands still for long loses messages, and the take says so.
+  // In real time a machine that stalls for long loses messages, and the take says so.
   const bool lost = info.output.find("messages lost on the way") != std::string::npos;
   EXPECT_EQ(info.code, lost && GetParam() == std::string("realtime") ? 3 : 0) << info.output;
   for (const char* topic : {"gesture/positions", "gesture/forces", "scene/frame", "node/status",

@@ -302,6 +302,162 @@ links:
   - {liaison: stop, between: ["p[0]", "p[1]"], rest_m: 0.1}
   - {liaison: stop, between: ["p[1]", "p[2]"], rest_m: 0.1}
 )yaml"},
+    {"ASourceThatWakesAnother", 136.3, R"yaml(
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0}
+liaisons:
+  first:
+    rest_m: 0
+    states:
+      idle: {stiffness_n_per_m: 50, exits: [{to: loaded, when: age_s > 0.3, rest: 0.8}]}
+      loaded: {stiffness_n_per_m: 50, final: true}
+  latch:
+    rest_m: 0
+    states:
+      free: {stiffness_n_per_m: 50, exits: [{to: loaded, when: elongation_m > 0.5}]}
+      loaded: {stiffness_n_per_m: 5000, exits: [{to: gone, when: elongation_m < 0.001}]}
+      gone: {stiffness_n_per_m: 1, final: true}
+  cubic: {rest_m: 0, elasticity: {kind: power, coefficient: 10000, exponent: 15}}
+links:
+  - {liaison: first, between: [g, b]}
+  - {liaison: latch, between: [g, b]}
+  - {liaison: cubic, between: [g, b]}
+)yaml",
+     1},
+    {"ATableNarrowerThanItsPlace", 80.0, R"yaml(
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: 2}
+liaisons:
+  pump:
+    rest_m: 0
+    states:
+      out: {exits: [{to: back, when: elongation_m > 1.25}]}
+      back:
+        elasticity: {kind: table, at_m: [1.01, 1.075, 1.14], force_n: [0, 20, 0]}
+        exits: [{to: out, when: elongation_m < 0.9}]
+  weak: {kind: spring, stiffness_n_per_m: 1, rest_m: 0}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 1.0e-5, exponent: 15}}
+links:
+  - {liaison: pump, between: [g, b]}
+  - {liaison: weak, between: [g, b]}
+  - {liaison: stop, between: [g, b]}
+)yaml",
+     1},
+    {"AWindowThatAStepPasses", 19.5, R"yaml(
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: 4}
+liaisons:
+  latch:
+    rest_m: 0
+    states:
+      free:
+        exits:
+          - {to: held, when: "elongation_m > 0.1 and elongation_m < 0.16"}
+          - {to: loaded, when: "elongation_m > 1.5"}
+      held: {stiffness_n_per_m: 1, final: true}
+      loaded: {stiffness_n_per_m: 300, exits: [{to: gone, when: elongation_m < 0.01}]}
+      gone: {final: true}
+  weak: {kind: spring, stiffness_n_per_m: 1, rest_m: 0}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 1.0e-6, exponent: 11}}
+links:
+  - {liaison: latch, between: [g, b]}
+  - {liaison: weak, between: [g, b]}
+  - {liaison: stop, between: [g, b]}
+)yaml",
+     1},
+    {"AForceOfTheStepBefore", 22.2, R"yaml(
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: 2}
+liaisons:
+  pump:
+    rest_m: 0
+    states:
+      on: {stiffness_n_per_m: 100, exits: [{to: loaded, when: "force_n > 10 and elongation_m < 0.065", rest: 2}]}
+      loaded: {stiffness_n_per_m: 150, exits: [{to: gone, when: elongation_m > 0}]}
+      gone: {final: true}
+  weak: {kind: spring, stiffness_n_per_m: 1, rest_m: 0}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 1.0e-5, exponent: 15}}
+links:
+  - {liaison: pump, between: [g, b]}
+  - {liaison: weak, between: [g, b]}
+  - {liaison: stop, between: [g, b]}
+)yaml",
+     1},
+    {"AThresholdFarAway", 24.6, R"yaml(
+matter:
+  g: {kind: fixed, at_m: [0, 0]}
+  b: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: 5}
+liaisons:
+  knee:
+    rest_m: 0
+    states:
+      limp: {exits: [{to: stiff, when: elongation_m > 2.5}]}
+      stiff: {stiffness_n_per_m: 10, exits: [{to: limp, when: elongation_m < 2.5}]}
+  weak: {kind: spring, stiffness_n_per_m: 1, rest_m: 0}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 1.0e-9, exponent: 15}}
+links:
+  - {liaison: weak, between: ["g[1]", b]}
+  - {liaison: stop, between: ["g[1]", b]}
+  - {liaison: knee, between: ["g[1]", b]}
+)yaml",
+     1},
+    {"AnArmThatTurnsAllAround", 70.8, R"yaml(
+matter:
+  g: {kind: fixed, at_m: [[-1, 0], [0, 0]]}
+  b: {kind: mass, mass_kg: 1, at_m: [0.5403023058681398, 0.8414709848078965], velocity_m_per_s: [-1.6829, 1.0806]}
+liaisons:
+  rod: {kind: spring, stiffness_n_per_m: 200, rest_m: 1}
+  knee:
+    kind: bending
+    states:
+      limp: {exits: [{to: stiff, when: bend_rad < 0.2}]}
+      stiff: {stiffness_n_m_per_rad: 20, exits: [{to: limp, when: bend_rad > 0.2}]}
+  stop: {rest_m: 1.3, pushes: false, elasticity: {kind: power, coefficient: 1000, exponent: 7}}
+links:
+  - {liaison: rod, between: ["g[1]", b]}
+  - {liaison: stop, between: ["g[1]", b]}
+  - {liaison: knee, between: ["g[0]", "g[1]", b]}
+)yaml",
+     2},
+    {"AKneeLetGoBeyondItsThreshold", 34.6, R"yaml(
+matter:
+  g: {kind: fixed, at_m: [0, 0]}
+  b: {kind: mass, mass_kg: 1, at_m: 0, velocity_m_per_s: 5}
+liaisons:
+  knee:
+    kind: bending
+    length_m: 1
+    states:
+      limp: {exits: [{to: stiff, when: bend_rad > 2.5}]}
+      stiff: {stiffness_n_m_per_rad: 10, exits: [{to: limp, when: bend_rad < 2.5}]}
+  weak: {kind: spring, stiffness_n_per_m: 1, rest_m: 0}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 1.0e-9, exponent: 15}}
+links:
+  - {liaison: weak, between: ["g[1]", b]}
+  - {liaison: stop, between: ["g[1]", b]}
+  - {liaison: knee, between: ["g[0]", "g[1]", b]}
+)yaml",
+     1},
+    {"ALatchALittleStifferOnTheWayBack", 12.1, R"yaml(
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0.1, velocity_m_per_s: 1}
+liaisons:
+  latch:
+    rest_m: 0
+    states:
+      out: {stiffness_n_per_m: 100, exits: [{to: back, when: elongation_m > 0.05 and speed_m_per_s < 0}]}
+      back: {stiffness_n_per_m: 100.009, exits: [{to: out, when: elongation_m < 0}]}
+  stop: {rest_m: 0, elasticity: {kind: power, coefficient: 0.1, exponent: 9}}
+links:
+  - {liaison: latch, between: [g, b]}
+  - {liaison: stop, between: [g, b]}
+)yaml",
+     1},
 };
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NotCertain, testing::ValuesIn(kNotCertain),

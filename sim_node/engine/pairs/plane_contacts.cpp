@@ -134,9 +134,9 @@ void PlaneContacts::take_springs(const ContactStretches& springs) noexcept {
   for (std::size_t a = 0; a < planes_.size(); ++a) {
     const StretchRows row = springs.row(a);
     for (std::size_t i = 0; i < row.count; ++i) {
-      const std::size_t at = a * column_.size() + row.column[i] / 4;
-      phase_[at] = row.phase[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) stretch_[axis][at] = row.stretch[axis][i];
+      const std::size_t place = a * column_.size() + row.column[i] / 4;
+      phase_[place] = row.phase[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) stretch_[axis][place] = row.stretch[axis][i];
     }
   }
   holds_springs_ = true;
@@ -152,14 +152,15 @@ void PlaneContacts::write_springs(ContactStretches& springs) const noexcept {
   springs.begin_step();
   for (std::size_t a = 0; a < planes_.size(); ++a) {
     for (std::size_t m = planes_.size(); m < column_.size(); ++m) {
-      const std::size_t at = a * column_.size() + m;
-      if (phase_[at] == kNoContact) continue;
+      const std::size_t place = a * column_.size() + m;
+      if (phase_[place] == kNoContact) continue;
       const auto column = static_cast<std::uint32_t>(4 * m);
-      const std::size_t kept = springs.add({&column,
-                                            nullptr,
-                                            &phase_[at],
-                                            {&stretch_[0][at], &stretch_[1][at], &stretch_[2][at]},
-                                            1});
+      const std::size_t kept =
+          springs.add({&column,
+                       nullptr,
+                       &phase_[place],
+                       {&stretch_[0][place], &stretch_[1][place], &stretch_[2][place]},
+                       1});
       CORDIS_ASSERT(kept == 1);  // there is room for all pairs that are listed
     }
     springs.end_row(a);

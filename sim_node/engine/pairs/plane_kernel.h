@@ -47,8 +47,8 @@ struct alignas(64) PlaneSum {
 /// What contacts of balls and planes remember of their friction, and its forces; arrays as in PlaneBalls.
 struct PlaneFriction {
   FrictionTerm term;
-  double* phase =
-      nullptr;  // of the members with the first plane, then with the next; see FrictionRows
+  // Of the members with the first plane, then with the next; see FrictionRows.
+  double* phase = nullptr;
   double* stretch[3] = {};  // likewise [m]
   std::size_t stride = 0;   // from plane to plane
   double* force[3] = {};    // of the last step on the held plane, and against each member [N]

@@ -158,22 +158,22 @@ template <class Lanes>
     const typename Lanes::Row3& way, double* squares) noexcept {
   using Row = typename Lanes::Row;
   using Row3 = typename Lanes::Row3;
-  const std::size_t at = a * friction.stride + m;
+  const std::size_t place = a * friction.stride + m;
   const Row push = Lanes::zero() - factor;
   const auto touches = Lanes::less(Lanes::zero(), push);
   if (Lanes::bits(touches) == 0U) {
-    Lanes::store(friction.phase + at, Lanes::zero());
+    Lanes::store(friction.phase + place, Lanes::zero());
     return {Lanes::zero(), Lanes::zero(), Lanes::zero()};
   }
   const Row3 across{way.x - along * normal.x, way.y - along * normal.y, way.z - along * normal.z};
   const Rubbing<Lanes> rubbing =
-      rub<Lanes>(term, push, normal, across, vectors_at<Lanes>(friction.stretch, at),
-                 Lanes::load(friction.phase + at));
+      rub<Lanes>(term, push, normal, across, vectors_at<Lanes>(friction.stretch, place),
+                 Lanes::load(friction.phase + place));
   const Row3 stretch = only<Lanes>(touches, rubbing.stretch);
-  Lanes::store(friction.stretch[0] + at, stretch.x);
-  Lanes::store(friction.stretch[1] + at, stretch.y);
-  Lanes::store(friction.stretch[2] + at, stretch.z);
-  Lanes::store(friction.phase + at, Lanes::select(touches, rubbing.phase, Lanes::zero()));
+  Lanes::store(friction.stretch[0] + place, stretch.x);
+  Lanes::store(friction.stretch[1] + place, stretch.y);
+  Lanes::store(friction.stretch[2] + place, stretch.z);
+  Lanes::store(friction.phase + place, Lanes::select(touches, rubbing.phase, Lanes::zero()));
   Lanes::store(squares, Lanes::load(squares) + dot<Lanes>(stretch, stretch));
   return only<Lanes>(touches, rubbing.force);
 }

@@ -26,17 +26,6 @@ std::vector<Interval> cells_between(std::vector<double> edges) {
   return cells;
 }
 
-std::vector<double> edges_of(double scale) {
-  constexpr double kGrowth = 1.3;
-  std::vector<double> edges{0.0, kInfinitelyFar, -kInfinitelyFar};
-  for (double edge = ConditionMap::kAtRest * scale; edge < ConditionMap::kFarAway * scale;
-       edge *= kGrowth) {
-    edges.push_back(edge);
-    edges.push_back(-edge);
-  }
-  return edges;
-}
-
 bool surely_holds(const Interval& truth) {
   return truth.low > 0.0 || truth.high < 0.0;
 }
@@ -77,21 +66,68 @@ Interval force_in(const engine::LinkState& state, double rest_length, const Inte
 
 }  // namespace
 
-ConditionMap::ConditionMap(const engine::StateMachine& machine, double rest_length,
+ConditionMap::ConditionMap(const engine::StateMachine& machine, double rest_length, double step,
                            const Reach& reach)
     : machine_(machine),
       rest_length_(rest_length),
+      step_(step),
       reach_(reach),
       scale_(std::max({reach.elongation, std::abs(rest_length), 1e-3})),
       rests_(machine.states.size()),
-      cells_(cells_between(edges_of(scale_))),
       exits_(machine.exits.size()) {
   find_known_rests();
+  cells_ = cells_between(edges());
   refine();
   for (std::size_t s = 0; s < machine.states.size(); ++s) {
     for (std::uint32_t e = machine.states[s].first_exit; e < machine.states[s].last_exit; ++e)
       exits_[e] = holding_of(s, machine.exits[e]);
   }
+}
+
+/// Where the last cell begins: beyond every number that a condition names [m].
+double ConditionMap::far_away() const {
+  constexpr double kScales = 1e3;
+  double farthest = scale_;
+  for (const engine::Transition& exit : machine_.exits) {
+    for (const engine::Instruction& instruction : exit.when.code) {
+      if (instruction.operation == engine::Operation::kConstant &&
+          std::isfinite(instruction.constant))
+        farthest = std::max(farthest, std::min(std::abs(instruction.constant), kWidest / kScales));
+    }
+  }
+  return kScales * farthest;
+}
+
+std::vector<double> ConditionMap::edges() const {
+  constexpr double kGrowth = 1.3;
+  std::vector<double> edges{0.0, kInfinitelyFar, -kInfinitelyFar};
+  const double end = far_away();
+  for (double edge = kAtRest * scale_; edge < end; edge *= kGrowth) {
+    edges.push_back(edge);
+    edges.push_back(-edge);
+  }
+  for (const engine::LinkState& state : machine_.states) {
+    const auto* table = std::get_if<engine::Table>(&state.elasticity);
+    if (table != nullptr)
+      edges.insert(edges.end(), table->argument().begin(), table->argument().end());
+  }
+  return edges;
+}
+
+/// What a liaison may have pulled with in the step before one in a state, whose elongation is in a cell [N]. It may have
+/// been in another state then.
+Interval ConditionMap::force_before(std::size_t state, const Interval& cell) const {
+  const Interval around{cell.low - step_, cell.high + step_};
+  Interval force = force_in(machine_.states[state], rest(state), around, reach_);
+  for (std::size_t s = 0; s < machine_.states.size(); ++s) {
+    const engine::LinkState& before = machine_.states[s];
+    for (std::uint32_t e = before.first_exit; e < before.last_exit; ++e) {
+      if (machine_.exits[e].target != state) continue;
+      const Interval other = force_in(before, rest(s), around, reach_);
+      force = {std::min(force.low, other.low), std::max(force.high, other.high)};
+    }
+  }
+  return force;
 }
 
 void ConditionMap::find_known_rests() {
@@ -133,8 +169,7 @@ Interval ConditionMap::truth(std::size_t state, const engine::Transition& exit,
   box.rest_moves = !knows_rest(state) &&
                    (asks(engine::Quantity::kDistance) || asks(engine::Quantity::kRestLength));
   if (box.rest_moves) box.distance = {-kWidest, kWidest};
-  if (asks(engine::Quantity::kForce))
-    box.force = force_in(machine_.states[state], rest_length, cell, reach_);
+  if (asks(engine::Quantity::kForce)) box.force = force_before(state, cell);
   const Interval value = values_of(exit.when, box);
   const bool is_number = !std::isnan(value.low) && !std::isnan(value.high);
   if (!is_number) return {0.0, 1.0};
@@ -146,7 +181,7 @@ Interval ConditionMap::truth(std::size_t state, const engine::Transition& exit,
 /// Adds the two ends of what is left of a cell in which a condition has its threshold.
 void ConditionMap::refine() {
   constexpr int kHalvings = 40;
-  std::vector<double> edges = edges_of(scale_);
+  std::vector<double> edges = this->edges();
   for (std::size_t s = 0; s < machine_.states.size(); ++s) {
     const engine::LinkState& state = machine_.states[s];
     for (std::uint32_t e = state.first_exit; e < state.last_exit; ++e) {

@@ -18,12 +18,14 @@ struct Holding {
   std::vector<bool> may_fail_lengthening;
 };
 
-/// Elongations side by side, fine near 0 and at thresholds of the conditions.
+/// Elongations side by side, fine near 0, at thresholds of the conditions and at the corners of tables.
 class ConditionMap {
  public:
   /// O(exits), some hundred enclosures each.
   /// @param rest_length  at the start [m]
-  ConditionMap(const engine::StateMachine& machine, double rest_length, const Reach& reach);
+  /// @param step         how far a step goes at most: conditions ask for the force of the step before [m]
+  ConditionMap(const engine::StateMachine& machine, double rest_length, double step,
+               const Reach& reach);
 
   /// They touch each other; the first and the last one have no end.
   const std::vector<Interval>& cells() const noexcept { return cells_; }
@@ -37,17 +39,20 @@ class ConditionMap {
   double scale() const noexcept { return scale_; }  ///< [m]
 
   static constexpr double kAtRest = 1e-6;  ///< the narrowest cell at 0, in scales
-  static constexpr double kFarAway = 1e3;  ///< where the last cell begins, in scales
 
  private:
   void find_known_rests();
   void refine();
+  double far_away() const;
+  std::vector<double> edges() const;
+  Interval force_before(std::size_t state, const Interval& cell) const;
   Interval truth(std::size_t state, const engine::Transition& exit, const Interval& cell,
                  const Interval& speed) const;
   Holding holding_of(std::size_t state, const engine::Transition& exit) const;
 
   const engine::StateMachine& machine_;
   double rest_length_;
+  double step_;  // [m]
   const Reach& reach_;
   double scale_;
   std::vector<std::vector<double>> rests_;  // of each state: two or none stand for any

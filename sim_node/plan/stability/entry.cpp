@@ -19,8 +19,9 @@ namespace cordis::plan {
 namespace {
 
 constexpr double kBoundless = std::numeric_limits<double>::infinity();
-constexpr double kAlike = 1e-4;       // of what is stored
-constexpr double kNegligible = 1e-9;  // of the energy of the scene
+constexpr double kAlike = 1e-4;            // of what is stored
+constexpr double kQuadratureError = 1e-8;  // likewise
+constexpr double kNegligible = 1e-9;       // of the energy of the scene
 
 using Hull = std::optional<Interval>;
 
@@ -61,22 +62,52 @@ bool is_elastic(const engine::LinkState& state) {
   return state.stiffness > 0.0 || !is_none(state.elasticity);
 }
 
+/// How far a step may go in a state [m]: at most as fast as all energy makes it, for the longest step of the stiffest
+/// state; no farther than the energy stretches a power that is certified.
+double step_of(const engine::StateMachine& machine, const engine::LinkState& state,
+               double rest_length, const Reach& reach) {
+  if (reach.inverse_mass == 0.0) return 0.0;
+  Reach free = reach;
+  free.held = false;
+  double stiffest = 0.0;
+  double step = kBoundless;
+  for (const engine::LinkState& each : machine.states) {
+    stiffest = std::max(stiffest, each.stiffness);
+    if (!std::holds_alternative<engine::Power>(each.elasticity)) continue;
+    const Stretch stretch = stretch_within(each, rest_length, /*turns=*/false, free);
+    step = std::min(step, std::max(stretch.longer, stretch.shorter));
+  }
+  const double longest =
+      std::min(reach.longest_step, 2.0 / std::sqrt(stiffest * reach.inverse_mass));
+  return std::min(step, relative_speed(state, reach) * longest);
+}
+
+double longest_step_of(const engine::StateMachine& machine, double rest_length,
+                       const Reach& reach) {
+  double longest = 0.0;
+  for (const engine::LinkState& state : machine.states)
+    longest = std::max(longest, step_of(machine, state, rest_length, reach));
+  return longest;
+}
+
 /// The ways through the states of a liaison, and what they bring in.
 class Ways {
  public:
+  /// @param reach_of_step  of how far a step goes
   Ways(const engine::StateMachine& machine, double rest_length, const Interval& possible,
-       double share, const Reach& reach)
+       double share, const Reach& reach_of_step, const Reach& reach)
       : machine_(machine),
         rest_length_(rest_length),
         possible_(possible),
         moves_rest_(std::ranges::any_of(
             machine.exits, [](const auto& exit) { return exit.rest != engine::RestRule::kKeep; })),
         reach_(reach),
-        map_(machine, rest_length, reach),
+        map_(machine, rest_length, longest_step_of(machine, rest_length, reach_of_step), reach),
         entered_(machine.states.size() + 1),
         carried_(entered_.size()),
         moved_(entered_.size()),
         present_(entered_.size()),
+        passes_fold_(entered_.size(), false),
         lowest_(entered_.size(), 0.0),
         brought_(entered_.size(), -kBoundless) {
     for (std::size_t s = 0; s < machine.states.size(); ++s)
@@ -171,10 +202,46 @@ class Ways {
     return overlap_of({ends.front().low - step, ends.back().high + step}, *carried_[node]);
   }
 
+  /// An angle that goes on beyond a half turn comes back from the other side.
+  bool turns_around() const { return possible_.low < 0.0 && std::isfinite(possible_.high); }
+
+  /// From where on an exit surely ends a state whose ends part, in cells so wide that no step passes them [m].
+  double surely_ended_above(std::size_t node, double from) const {
+    const std::vector<Interval>& cells = map_.cells();
+    const double step = step_in(node);
+    double begin = kBoundless;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i].low < from) continue;
+      if (may_stay(node, i, &Holding::may_fail_lengthening)) {
+        begin = kBoundless;
+        continue;
+      }
+      begin = std::min(begin, cells[i].low);
+      if (cells[i].high - begin >= step) return begin;
+    }
+    return kBoundless;
+  }
+
+  /// Likewise, where they come nearer.
+  double surely_ended_below(std::size_t node, double from) const {
+    const std::vector<Interval>& cells = map_.cells();
+    const double step = step_in(node);
+    double begin = -kBoundless;
+    for (std::size_t i = cells.size(); i-- > 0;) {
+      if (cells[i].high > from) continue;
+      if (may_stay(node, i, &Holding::may_fail_shortening)) {
+        begin = -kBoundless;
+        continue;
+      }
+      begin = std::max(begin, cells[i].high);
+      if (begin - cells[i].low >= step) return begin;
+    }
+    return -kBoundless;
+  }
+
   /// Wherever a state may be: as far as the energy carries it, and no exit surely ends it on the way.
   void find_present(std::size_t node) {
     if (!entered_[node]) return;
-    const std::vector<Interval>& cells = map_.cells();
     const Interval began = *entered_[node];
     Interval all =
         *hull_of(began, elongations_within(in(node), map_.rest(number(node)), reach_in(node)));
@@ -182,19 +249,12 @@ class Ways {
       all.low = std::min(std::max(all.low, possible_.low), began.low);
       all.high = std::max(std::min(all.high, possible_.high), began.high);
     }
+    if (turns_around() && (all.low <= possible_.low || all.high >= possible_.high)) all = possible_;
     carried_[node] = all;
-    for (const Interval& cell : cells) {
-      const auto i = static_cast<std::size_t>(&cell - cells.data());
-      if (cell.low >= began.high && !may_stay(node, i, &Holding::may_fail_lengthening)) {
-        all.high = std::min(all.high, cell.low);
-        break;
-      }
-    }
-    for (std::size_t i = cells.size(); i-- > 0;) {
-      if (cells[i].high > began.low || may_stay(node, i, &Holding::may_fail_shortening)) continue;
-      all.low = std::max(all.low, cells[i].high);
-      break;
-    }
+    all.high = std::min(all.high, surely_ended_above(node, began.high));
+    all.low = std::max(all.low, surely_ended_below(node, began.low));
+    passes_fold_[node] = turns_around() && (all.low <= possible_.low || all.high >= possible_.high);
+    if (passes_fold_[node]) all = possible_;
     // Beyond its range no pair is in the state of the start.
     const bool has_range = number(node) == machine_.start && std::isfinite(reach_.range);
     if (has_range && (is_at_first_rest(node) || !moves_rest_))
@@ -231,7 +291,9 @@ class Ways {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       before[i] = (exit.may_fail[i] && overlap_of(where, cells[i])) ||
                   overlap_of(*entered_[node], cells[i]) ||
-                  (moved_[node] && overlap_of(*moved_[node], cells[i]));
+                  (moved_[node] && overlap_of(*moved_[node], cells[i])) ||
+                  (passes_fold_[node] && (overlap_of({possible_.low, possible_.low}, cells[i]) ||
+                                          overlap_of({possible_.high, possible_.high}, cells[i])));
     }
     std::vector<Place> found;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -250,23 +312,9 @@ class Ways {
     return found;
   }
 
-  /// How far a step may go in a state [m]: at most as fast as all energy makes it, for the longest step of the stiffest
-  /// state; no farther than the energy stretches a power that is certified.
+  /// How far a step may go in a state [m].
   double step_in(std::size_t node) const {
-    Reach free = reach_in(node);
-    free.held = false;
-    double stiffest = 0.0;
-    double step = kBoundless;
-    for (const engine::LinkState& each : machine_.states) {
-      stiffest = std::max(stiffest, each.stiffness);
-      if (!std::holds_alternative<engine::Power>(each.elasticity)) continue;
-      const Stretch stretch = stretch_within(each, rest_length_, /*turns=*/false, free);
-      step = std::min(step, std::max(stretch.longer, stretch.shorter));
-    }
-    if (reach_.inverse_mass == 0.0) return 0.0;
-    const double longest =
-        std::min(reach_.longest_step, 2.0 / std::sqrt(stiffest * reach_.inverse_mass));
-    return std::min(step, relative_speed(in(node), reach_in(node)) * longest);
+    return step_of(machine_, in(node), rest_length_, reach_in(node));
   }
 
   /// The elongation after a change to an expression; none: it may be any.
@@ -326,7 +374,7 @@ class Ways {
     if (std::isinf(lowest_after))
       return {std::isinf(lowest_[node]) && is_alike(number(node), to) ? 0.0 : kBoundless,
               Interval{next, next}};
-    return {gives - stored - kAlike * (std::abs(gives) + std::min(stored, 1e300)),
+    return {gives - stored - kQuadratureError * (std::abs(gives) + std::min(stored, 1e300)),
             Interval{next, next}};
   }
 
@@ -466,14 +514,35 @@ class Ways {
   const Reach& reach_;
   ConditionMap map_;
   std::vector<StatePotential> potentials_;
-  std::vector<Hull> entered_;    // by in(): elongations where it begins; none: it never does
-  std::vector<Hull> carried_;    // likewise how far the energy carries it
-  std::vector<Hull> moved_;      // likewise where its last step may take it, see moved_in()
-  std::vector<Hull> present_;    // likewise where it may be until an exit surely ends it
-  std::vector<double> lowest_;   // likewise its least potential there [J]
-  std::vector<double> brought_;  // likewise [J]; -infinity: it is not entered
-  std::vector<Brings> brings_;   // of all changes that may come
+  std::vector<Hull> entered_;      // by in(): elongations where it begins; none: it never does
+  std::vector<Hull> carried_;      // likewise how far the energy carries it
+  std::vector<Hull> moved_;        // likewise where its last step may take it, see moved_in()
+  std::vector<Hull> present_;      // likewise where it may be until an exit surely ends it
+  std::vector<bool> passes_fold_;  // likewise: an angle that turns all around
+  std::vector<double> lowest_;     // likewise its least potential there [J]
+  std::vector<double> brought_;    // likewise [J]; -infinity: it is not entered
+  std::vector<Brings> brings_;     // of all changes that may come
 };
+
+/// What has been brought in where each state is entered [J]. Conditions on the force count how far a step goes with that
+/// energy, too.
+std::vector<double> brought_by(const engine::StateMachine& machine, double rest_length,
+                               const Interval& possible, double share, const Reach& reach) {
+  constexpr int kRounds = 8;
+  constexpr double kMore = 1.2;
+  const bool asks = std::ranges::any_of(machine.exits, [](const engine::Transition& exit) {
+    return asks_for(exit.when, engine::Quantity::kForce);
+  });
+  Reach here = reach;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> brought =
+        Ways(machine, rest_length, possible, share, here, reach).brought();
+    const double most = std::ranges::max(brought);
+    if (!asks || std::isinf(most) || reach.brought + most <= here.brought) return brought;
+    here.brought = reach.brought + kMore * most;
+  }
+  return std::vector<double>(machine.states.size(), kBoundless);
+}
 
 }  // namespace
 
@@ -490,7 +559,7 @@ std::vector<Entry> entries_of(const engine::StateMachine& state_machine, double 
     return entries;
   for (const double share : {0.0, 1.0}) {
     const std::vector<double> brought =
-        Ways(state_machine, rest_length, possible, share, reach).brought();
+        brought_by(state_machine, rest_length, possible, share, reach);
     for (std::size_t s = 0; s < entries.size(); ++s)
       entries[s].brought = std::max(entries[s].brought, brought[s]);
     if (reach.mass_a.low == reach.mass_a.high && reach.mass_b.low == reach.mass_b.high) break;

@@ -25,7 +25,15 @@ class StatePotential {
   const std::vector<double>& edges() const noexcept { return edges_; }  ///< finite, ascending [m]
 
  private:
+  /// The tension at an elongation.
+  struct Sample {
+    double elongation = 0.0;  // [m]
+    double tension = 0.0;     // [N]
+  };
+  static constexpr int kHalvings = 10;
+
   double sum(double from, double to) const;
+  double sum_of_part(const Sample& from, const Sample& to, int halvings) const;
 
   const engine::LinkState& state_;
   double rest_length_;

@@ -185,7 +185,16 @@ Kind kind_of_bend(const NetworkDescription& network, std::uint32_t index, const 
   const std::vector<std::uint32_t> mats{bend.mat_a, bend.mat_b, bend.mat_c};
   kind.reach = reach_between(reach, network, mats, mats);
   kind.reach.mass_a = kind.reach.mass_b = {};
-  kind.reach.inverse_mass = kind.reach.force = kind.reach.driven = 0.0;
+  kind.reach.force = kind.reach.driven = 0.0;
+  const double of_a = 1.0 / bend.length_ab;  // by how much the angle turns for each metre of a
+  const double of_c = 1.0 / bend.length_bc;
+  const auto inverse_mass = [&](std::uint32_t mat) {
+    return is_free_mass(network, mat) ? 1.0 / network.mats[mat].mass : 0.0;
+  };
+  kind.reach.inverse_mass = of_a * of_a * inverse_mass(bend.mat_a) +
+                            (of_a + of_c) * (of_a + of_c) * inverse_mass(bend.mat_b) +
+                            of_c * of_c * inverse_mass(bend.mat_c);
+  kind.reach.speed = 2.0 * (of_a + of_c) * reach.speed;
   kind.reach.elongation = std::max(std::abs(start), 1.0);
   kind.reach.begins = {start, start};
   kind.counts.assign(network.mats.size(), 0.0);
@@ -229,12 +238,16 @@ Switching switching_of(const NetworkDescription& network, const Reach& reach) {
   constexpr int kRounds = 20;
   constexpr double kMore = 1.05;
   double all = find(0.0);
-  double sources = 0.0;
-  for (std::size_t k = 0; k < kinds.size(); ++k) sources += each[k] > 0.0 ? kinds[k].count : 0.0;
-  double known = all;
-  for (int round = 0; sources > 1.0 && all > 0.0; ++round) {
-    known = kMore * all;
+  for (int round = 0; all > 0.0; ++round) {
+    const std::vector<double> before = each;
+    const double known = kMore * all;
     all = find(known);
+    double sources = 0.0;
+    for (std::size_t k = 0; k < kinds.size(); ++k) sources += each[k] > 0.0 ? kinds[k].count : 0.0;
+    if (sources <= 1.0) {  // it has found what it brought in itself, and wakes no other
+      each = before;
+      break;
+    }
     if (all <= known) break;
     if (round < kRounds) continue;
     std::size_t most = 0;
