@@ -6,9 +6,11 @@
 #include <cstring>
 #include <random>
 #include <set>
+#include <span>
 
 #include <gtest/gtest.h>
 
+#include "record_node/mcap/chunk_contents.h"
 #include "record_node/mcap/crc32.h"
 #include "record_node/mcap/file_error.h"
 #include "record_node/mcap/format.h"
@@ -282,6 +284,40 @@ TEST(Recover, RemovesEveryDescriptionThatAChunkSaysOtherwise) {
   }
 }
 
+/// A chunk has a CRC, a description behind it has none.
+TEST(Recover, KeepsTheDescriptionOfAChunkBeforeOneBehindIt) {
+  const TakeFolder folder;
+  const auto path = folder / "behind.mcap";
+  const Schema schema{1, "T", "omgidl", "struct T { long a; };"};
+  const Channel channel{1, 1, "a", "cdr", {}};
+  Bytes bytes;
+  append_magic(bytes);
+  append_header(bytes, "test");
+  append(bytes, schema);
+  append(bytes, channel);
+  for (const std::uint64_t time : {5, 6}) {
+    Bytes records;
+    append(records, schema);
+    append(records, channel);
+    append(records, Message{1, 0, time, time, {}});
+    append(bytes, ChunkView{time, time, records.size(), crc32(records), "", records});
+    append(bytes, Schema{1, "U", "omgidl", ""});
+    append(bytes, Channel{1, 1, "b", "cdr", {}});
+  }
+  std::vector<char> contents(bytes.size());
+  std::memcpy(contents.data(), bytes.data(), bytes.size());
+  write_file(path, contents);
+
+  recover(path);
+
+  const Reader reader(path);
+  EXPECT_EQ(reader.damage(), "");
+  EXPECT_EQ(reader.schemas().at(1), schema);
+  EXPECT_EQ(reader.channels().at(1), channel);
+  EXPECT_EQ(messages_of(reader).size(), 2u);
+  EXPECT_TRUE(check_take(path).faults.empty());
+}
+
 /// A chunk with messages of a channel that is described, and of one whose description is nowhere.
 TEST(Recover, KeepsMessagesOfAChannelThatNothingDescribes) {
   const TakeFolder folder;
@@ -331,14 +367,38 @@ TEST(Recover, MakesTakesOfTheCorpusWhole) {
   }
 }
 
+/// The same take with the indexes of its chunks in the opposite order. Nothing says in which one they stand.
+std::vector<char> with_last_chunk_first(const std::vector<char>& take) {
+  const auto file = std::as_bytes(std::span(take));
+  const auto last = file.last(kFooterSize + kMagic.size());
+  const std::uint64_t begin = parse_footer(first_record(last)->content).value().summary_start;
+  const auto summary = file.subspan(begin, file.size() - last.size() - begin);
+  std::vector<char> reversed;
+  std::uint64_t first = 0;
+  for_each_record(summary, [&](const Record& record, std::uint64_t offset) {
+    if (record.opcode != Opcode::kChunkIndex) return true;
+    if (reversed.empty()) first = begin + offset;
+    const auto here = take.begin() + static_cast<std::ptrdiff_t>(begin + offset);
+    reversed.insert(reversed.begin(), here, here + static_cast<std::ptrdiff_t>(record.size()));
+    return true;
+  });
+  std::vector<char> bytes = take;
+  std::ranges::copy(reversed, bytes.begin() + static_cast<std::ptrdiff_t>(first));
+  const auto no_crc = bytes.end() - static_cast<std::ptrdiff_t>(kMagic.size() + 4);
+  std::fill_n(no_crc, 4, '\0');
+  return bytes;
+}
+
 /// A chunk gets the code of a record of others, and a length that covers the chunks after it, up to the
 /// beginning of another one.
 TEST(Recover, KeepsChunksThatARecordOfOthersSeemsToCover) {
   const TakeFolder folder;
   const auto path = folder / "covered.mcap";
-  for (const unsigned opcode : {0x80U, 0x81U, 0xffU}) {
-    const Original original(folder, 2);
-    std::vector<char> bytes = original.bytes;
+  const Original original(folder, 2);
+  const std::vector<char> reversed = with_last_chunk_first(original.bytes);
+  write_file(path, reversed);
+  ASSERT_TRUE(check_take(path).faults.empty());
+  const auto recovers = [&](std::vector<char> bytes, unsigned opcode) {
     const std::uint64_t begin = original.chunks[3].offset;
     const std::uint64_t length = original.chunks[9].offset - begin - kRecordHead;
     bytes[begin] = static_cast<char>(opcode);
@@ -354,6 +414,10 @@ TEST(Recover, KeepsChunksThatARecordOfOthersSeemsToCover) {
     EXPECT_EQ(recovery.statistics.message_count, expected) << "opcode " << opcode;
     expect_part_of(messages_of(Reader(path)), original.take.messages);
     EXPECT_TRUE(check_take(path).faults.empty());
+  };
+  for (const unsigned opcode : {0x80U, 0x81U, 0xffU}) {
+    recovers(original.bytes, opcode);
+    recovers(reversed, opcode);
   }
 }
 

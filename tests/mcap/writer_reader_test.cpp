@@ -44,6 +44,30 @@ TEST(WriterAndReader, GiveBackEveryRandomTake) {
   }
 }
 
+/// Messages of one time stay in the order in which they were written, across chunks too.
+TEST(WriterAndReader, KeepTheOrderOfMessagesOfOneTime) {
+  const TakeFolder folder;
+  std::mt19937 random(1);
+  for (const std::uint32_t chunk_bytes : {1u, 200u}) {  // a chunk of one message, and of some
+    const auto path = folder / (std::to_string(chunk_bytes) + ".mcap");
+    WriterConfig config;
+    config.chunk_bytes = chunk_bytes;
+    Writer writer(path, config);
+    RandomTake take;
+    const std::uint16_t channel = writer.add_channel({0, 0, "topic", "cdr", {}});
+    for (std::uint32_t i = 0; i < 100; ++i) {
+      const std::uint64_t time = 1000 + random() % 3;
+      take.messages.push_back({channel, i, time, time, random_bytes(random, 10)});
+      ASSERT_EQ(writer.write(take.messages.back().message()), WriteStatus::kOk);
+    }
+    ASSERT_EQ(writer.close(), WriteStatus::kOk);
+
+    const Reader reader(path);
+    ASSERT_GT(reader.chunks().size(), 5u);
+    EXPECT_EQ(messages_of(reader), take.by_time());
+  }
+}
+
 TEST(Writer, NeverReplacesAFileThatCameMeanwhile) {
   const TakeFolder folder;
   const auto path = folder / "take.mcap";
