@@ -210,6 +210,64 @@ TEST(ForceGuard, HoldsWhateverItIsGiven) {
   EXPECT_GT(forces, 1000);
 }
 
+/// 5 N in the first period, and 0.5 N more in each tenth of one.
+TEST(ForceGuard, ChangesForcesByNoMoreThanTheTimeBetweenCommandsAllows) {
+  constexpr double kSpan = 0.0001;  // [s]
+  ForceGuard guard(force_settings());
+  double before = 0.0;
+  double changed = 0.0;
+  for (int n = 0; n < 50; ++n) {
+    guard.accept(all(n % 2 == 0 ? 20.0 : -20.0));
+    const double since_s = n == 0 ? ForceGuard::kWholePeriod : kSpan;
+    const double force = guard.tick(0.0, {}, 0.0, since_s)[0];
+    changed += std::abs(force - before);
+    before = force;
+    ASSERT_LE(changed, 5000.0 * (n * kSpan + 0.001) + kRounding) << n;
+  }
+  EXPECT_GT(changed, 20.0) << "it may change by as much";
+}
+
+TEST(ForceGuard, CountsTheWorkOfTheMeanForceOfAPeriod) {
+  ForceGuard guard(force_settings());
+  guard.accept(all(0.0));
+  guard.tick(0.0, {});
+  guard.accept({2.0});
+  guard.tick(0.0, {}, 0.25);  // 0 N for a quarter of the period, then 2 N
+  guard.accept({4.0});
+  guard.tick_again(0.0, 0.75, 0.0005);  // and 4 N for the last one
+
+  guard.tick(0.0, {0.001});
+
+  EXPECT_NEAR(guard.energy().given_j(), 0.001 * (0.5 * 2.0 + 0.25 * 4.0), 1e-15);
+}
+
+TEST(ForceGuard, LetsADeviceThatHasBeenAwayGoForAPeriodAndRampsUpAnew) {
+  ForceGuardSettings ramped = force_settings();
+  for (const double ramp_s : {0.0, 0.01}) {
+    ramped.ramp_s = ramp_s;
+    ForceGuard guard(ramped);
+    guard.accept(all(4.0));
+    for (int n = 0; n < 20; ++n) guard.tick(0.0, {});
+    ASSERT_EQ(guard.tick(0.0, {}), all(4.0));
+
+    guard.let_go();
+
+    guard.accept(all(4.0));
+    EXPECT_EQ(guard.tick(0.0, {}), AxisValues{});
+    EXPECT_EQ(guard.tick_again(0.0, 0.5, 0.0005), AxisValues{});
+    EXPECT_NEAR(guard.tick(0.0, {})[0], ramp_s > 0.0 ? 0.4 : 4.0, kRounding);
+  }
+}
+
+TEST(ForceGuard, ChangesNothingWithinAPeriodForForcesAsOldAsTheWatchdogTime) {
+  ForceGuard guard(force_settings());
+  guard.accept(all(10.0));
+  for (int n = 0; n < 5; ++n) guard.tick(0.0, {});
+
+  for (const double age_s : {0.02, 0.03}) EXPECT_EQ(guard.tick_again(age_s, 0.5, 0.0005)[0], 10.0);
+  EXPECT_EQ(guard.tick(0.02, {}), AxisValues{});
+}
+
 TEST(ForceGuard, GivesAMovingAxisNoMoreThanItsPower) {
   ForceGuardSettings weak = force_settings();
   weak.power_w = 2.0;
