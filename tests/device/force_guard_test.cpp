@@ -259,6 +259,14 @@ TEST(ForceGuard, LetsADeviceThatHasBeenAwayGoForAPeriodAndRampsUpAnew) {
   }
 }
 
+TEST(ForceGuard, ForgetsAtItsStartThatItLetGo) {
+  ForceGuard guard(force_settings());
+  guard.let_go();
+  guard.start();
+  guard.accept(all(4.0));
+  EXPECT_EQ(guard.tick(0.0, {}), all(4.0));
+}
+
 TEST(ForceGuard, ChangesNothingWithinAPeriodForForcesAsOldAsTheWatchdogTime) {
   ForceGuard guard(force_settings());
   guard.accept(all(10.0));

@@ -5,11 +5,16 @@
 #include <chrono>
 #include <ctime>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
 
 #include "node/time.h"
 #include "tests/support/eventually.h"
+#include "tests/support/realtime_permission.h"
 #include "tests/support/timer_control.h"
 
 namespace cordis::node {
@@ -25,6 +30,22 @@ std::int64_t processor_nsec() {
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
   return used.tv_sec * 1'000'000'000 + used.tv_nsec;
+}
+
+/// What the kernel lets a thread have, and says that it has.
+TEST(RealtimeGrant, SaysWhatTheSystemHasGranted) {
+  constexpr int kPriority = 3;
+  RealtimeGrant grant;
+  sched_param parameters{};
+  int policy = -1;
+  std::thread([&] {
+    grant = make_realtime(kPriority);
+    pthread_getschedparam(pthread_self(), &policy, &parameters);
+  }).join();
+  munlockall();
+  EXPECT_EQ(grant.fifo, test::may_have_realtime_priority());
+  EXPECT_EQ(grant.fifo, policy == SCHED_FIFO);
+  EXPECT_EQ(parameters.sched_priority, grant.fifo ? kPriority : 0);
 }
 
 TEST(PacedLoop, NeverTicksBeforeItsDeadline) {

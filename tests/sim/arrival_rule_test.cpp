@@ -187,6 +187,27 @@ TEST(ArrivalRule, WaitsForNoDeviceThatIsSilent) {
   for (int n = 0; n < 100; ++n) EXPECT_TRUE(plays_on_arrival(false)) << n;
 }
 
+/// A device of 250 Hz beside a scene of 1000 Hz: a tick that stands for three periods brings its next sample nearer.
+TEST(ArrivalRule, CountsSkippedPeriodsTowardsTheNextSampleOfASlowDevice) {
+  ArrivalRule rule(kSceneRate, kRuleStart);
+  std::vector<ArrivalRule::Device> devices{{.id = 1, .sent = 0, .plays = true}};
+  const auto tick = [&](bool sends, int periods_late) {
+    rule.begin_wait(devices);
+    const std::int64_t middle = rule.grid().end_nsec() - kScenePeriod / 2;
+    EXPECT_FALSE(rule.is_due(devices, middle - 1)) << "nothing has come";
+    devices[0].sent += sends ? 1 : 0;
+    const bool is_due = rule.is_due(devices, middle);
+    const std::int64_t end = rule.grid().end_nsec() + periods_late * kScenePeriod;
+    EXPECT_EQ(rule.begin_tick(devices, is_due ? middle : end),
+              static_cast<std::uint64_t>(periods_late));
+    return is_due;
+  };
+  for (int n = 1; n <= 400; ++n) tick(n % 4 == 0, 0);
+
+  tick(false, 2);
+  EXPECT_TRUE(tick(true, 0)) << "the fourth period after the last sample";
+}
+
 TEST(ArrivalRule, RestartsAtAnotherRateAsIfItWereNew) {
   const std::int64_t now = kRuleStart + 123'456'789;
   ArrivalRule restarted(kSceneRate, kRuleStart);
