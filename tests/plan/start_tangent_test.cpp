@@ -330,6 +330,57 @@ TEST(StartTangent, CountsTheFallOfARootAndNotItsRise) {
   EXPECT_NEAR(StartTangent(scene).diverging_step(), of_spring, 1e-3 * of_spring);
 }
 
+/// A ball that 200 N press along a line against a contact of 1000 N/m, which begins to push at 1 m: it is in balance
+/// at 0.8 m. A spring of 2000 N/m across that line holds it.
+NetworkDescription pressed_ball(const Vec3& touched, const Vec3& outwards) {
+  const Vec3 across(outwards.y(), -outwards.x(), 0);
+  const Vec3 place = touched + 0.8 * outwards;
+  NetworkDescription scene;
+  scene.dimension = 2;
+  scene.step = 1e-3;
+  scene.mats = {fixed(Vec3::Zero()), mass(0.03, place), fixed(place + 100.0 * across),
+                fixed(place - 100.0 * outwards)};
+  scene.links = {{1, 2, 2000.0, 0.0, 100.0},
+                 {1, 3, 10.0, 0.0, 80.0}};  // 200 N at 100 m: 2 N/m across
+  scene.surfaces.emplace_back();
+  scene.surfaces[0].kind = engine::SurfaceKind::kBox;
+  scene.surfaces[0].half_size = Vec3(0.1, 0.1, std::numeric_limits<double>::infinity());
+  scene.state_machines = {contact(1000.0)};
+  add_pair(scene, 0, 1, 1.0, 1.0);
+  return scene;
+}
+
+/// The largest way of that ball across, in 2000 steps from 1 um beside its place, over that 1 um.
+double growth_across(NetworkDescription scene, double step) {
+  constexpr double kAside = 1e-6;
+  const Vec3 place = scene.mats[1].position;
+  const Vec3 across = (scene.mats[2].position - place).normalized();
+  scene.step = step;
+  scene.mats[1].position += kAside * across;
+  World world = make_world(scene);
+  double largest = 0.0;
+  for (int n = 0; n < 2000; ++n) {
+    world.step();
+    largest = std::max(largest, std::abs((world.position(1) - place).dot(across)));
+  }
+  return largest / kAside;
+}
+
+TEST(StartTangent, KnowsThatABallPressedAgainstACornerGivesWayAcross) {
+  const double diagonal = 1.0 / std::sqrt(2.0);
+  // About a corner 200 N take 200 / 0.8 N/m, on a face nothing.
+  const NetworkDescription at_corner = pressed_ball(Vec3(0.1, 0.1, 0), Vec3(diagonal, diagonal, 0));
+  const double of_corner = 2.0 * std::sqrt(0.03 / 1752.0);
+  EXPECT_NEAR(StartTangent(at_corner).diverging_step(), of_corner, 1e-6 * of_corner);
+  EXPECT_LT(growth_across(at_corner, 0.98 * of_corner), 10.0);
+  EXPECT_GT(growth_across(at_corner, 1.02 * of_corner), 1e3);
+
+  const NetworkDescription at_face = pressed_ball(Vec3(0.1, 0, 0), Vec3::UnitX());
+  const double of_face = 2.0 * std::sqrt(0.03 / 2002.0);
+  EXPECT_GE(StartTangent(at_face).diverging_step(), of_face) << "not sure too soon";
+  EXPECT_LT(growth_across(at_face, 0.98 * of_face), 10.0);
+}
+
 TEST(StartTangent, NeverEndsWhereNothingPulls) {
   NetworkDescription scene = oscillator(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
 

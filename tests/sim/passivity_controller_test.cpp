@@ -306,5 +306,23 @@ TEST(PassivityController, DampsAlongTheAxesOfTheDeviceAlone) {
   EXPECT_NEAR(loop.place().y(), 3.0 * 0.2, 0.001);
 }
 
+/// A damper to a mass of 0.3 kg has the Z' of 1.5 at the port: 2 more would pass the limit K' + 2 Z' < 4 of the scheme.
+TEST(PassivityController, DampsNothingThatADamperWouldMakeUnstable) {
+  scene::Scene scene = bare_scene(1);
+  scene.network.mats.push_back(mass_at(Vec3::Zero(), 0.3));
+  scene.network.links = {{0, 2, 0.0, 1.5 * kPortMass / kTick, 0.0}};
+  Loop watched({0.0, 8, 100.0}, scene);
+  Loop free({0.0, 8, 100.0, 1, false}, scene);
+  double farthest = 0.0;
+  for (int n = 0; n < 5000; ++n) {
+    const double hand = n < 1000 ? 0.0 : 0.005;
+    watched.tick(hand);
+    free.tick(hand);
+    farthest = std::max(farthest, std::abs(free.position() - hand));
+    ASSERT_NEAR(watched.position(), free.position(), 1e-12) << n;
+  }
+  EXPECT_GT(farthest, 0.02) << "what the delay makes lets it swing ever more";
+}
+
 }  // namespace
 }  // namespace cordis::sim
