@@ -187,11 +187,16 @@ TEST(ArrivalRule, WaitsForNoDeviceThatIsSilent) {
   for (int n = 0; n < 100; ++n) EXPECT_TRUE(plays_on_arrival(false)) << n;
 }
 
-/// A device of 250 Hz beside a scene of 1000 Hz: a tick that stands for three periods brings its next sample nearer.
-TEST(ArrivalRule, CountsSkippedPeriodsTowardsTheNextSampleOfASlowDevice) {
-  ArrivalRule rule(kSceneRate, kRuleStart);
+/// A device beside a scene of 1000 Hz, which has sent a sample in every fourth period and in the last one.
+struct SlowDevice {
+  ArrivalRule rule{kSceneRate, kRuleStart};
   std::vector<ArrivalRule::Device> devices{{.id = 1, .sent = 0, .plays = true}};
-  const auto tick = [&](bool sends, int periods_late) {
+
+  SlowDevice() {
+    for (int n = 1; n <= 400; ++n) tick(n % 4 == 0);
+  }
+  /// @return true if the sample is played on arrival, in the middle of the period; else the tick comes at the end
+  bool tick(bool sends, int periods_late = 0) {
     rule.begin_wait(devices);
     const std::int64_t middle = rule.grid().end_nsec() - kScenePeriod / 2;
     EXPECT_FALSE(rule.is_due(devices, middle - 1)) << "nothing has come";
@@ -201,11 +206,23 @@ TEST(ArrivalRule, CountsSkippedPeriodsTowardsTheNextSampleOfASlowDevice) {
     EXPECT_EQ(rule.begin_tick(devices, is_due ? middle : end),
               static_cast<std::uint64_t>(periods_late));
     return is_due;
-  };
-  for (int n = 1; n <= 400; ++n) tick(n % 4 == 0, 0);
+  }
+};
 
-  tick(false, 2);
-  EXPECT_TRUE(tick(true, 0)) << "the fourth period after the last sample";
+TEST(ArrivalRule, CountsSkippedPeriodsTowardsTheNextSampleOfASlowDevice) {
+  SlowDevice slow;
+  slow.tick(false, 2);  // stands for three periods
+  EXPECT_TRUE(slow.tick(true)) << "the fourth period after the last sample";
+  EXPECT_FALSE(slow.tick(true)) << "none is due in the next one";
+}
+
+TEST(ArrivalRule, KnowsNothingOfADeviceThatComesInPlaceOfAnother) {
+  SlowDevice other;
+  other.devices[0].id = 2;
+  EXPECT_TRUE(other.tick(true)) << "it may send in every period";
+  SlowDevice again;  // counted from the start, as in a scene that is loaded again
+  again.devices[0].sent = 0;
+  EXPECT_TRUE(again.tick(true));
 }
 
 TEST(ArrivalRule, RestartsAtAnotherRateAsIfItWereNew) {
