@@ -102,11 +102,12 @@ class PromptDriver : public Driver {
   }
   bool change_command(const AxisValues& commanded, double share) noexcept override {
     commands.push_back({time_nsec, commanded[0], share});
-    return true;
+    return commands.size() != refused;
   }
   void stop() noexcept override {}
 
   std::vector<Command> commands;
+  std::size_t refused = 0;        // the one of this number fails, from 1
   std::int64_t reading_nsec = 0;  // how long the sensors take
   int periods = 0;
   int writes = 0;
@@ -359,6 +360,26 @@ TEST(RealtimeExchange, TwoPositionsOfAPeriodStayWithinTheSpeedOfOne) {
   ASSERT_EQ(rig.driver.commands.size(), 4u);
   EXPECT_NEAR(rig.driver.commands[2].value, -0.002, 1e-15);
   EXPECT_NEAR(rig.driver.commands[3].value, -0.002, 1e-15);
+}
+
+TEST(RealtimeExchange, ADriverThatRefusesOneOfTwoCommandsHasNoDeviceInThatPeriod) {
+  for (const std::size_t which : {1u, 2u}) {
+    SCOPED_TRACE(which);
+    time_nsec = 1'000'000'000;
+    PromptRig rig;
+    rig.period(1.0, 100'000);
+    rig.period(1.0, 100'000);
+    rig.driver.refused = 2 + which;
+    rig.period(1.0, 900'000);  // one at half of the period, and one for the answer
+    ASSERT_EQ(rig.driver.commands.size(), 4u);
+    ASSERT_EQ(rig.channel.sent.size(), 3u);
+
+    rig.period(1.0, 100'000);
+    EXPECT_EQ(rig.channel.sent.size(), 3u) << "nothing is sent";
+    EXPECT_EQ(rig.meter.phase(), Phase::kLost);
+    rig.period(1.0, 100'000);
+    EXPECT_EQ(rig.channel.sent.size(), 4u);
+  }
 }
 
 TEST(RealtimeExchange, TwoCommandsOfAPeriodStayWithinTheSlewOfOne) {
