@@ -90,6 +90,27 @@ TEST(Gestures, GraspAndDragMovesTwoFingersTogether) {
   EXPECT_NEAR(paths[0].value_at(2.0), 0.03 - 0.01, 1e-15);
 }
 
+TEST(Gestures, GraspAndDragGoesFromItsPlaceAndBack) {
+  const auto paths = gesture_of(
+      "gesture: {kind: grasp_and_drag, open_m: 0.04, grip_m: 0.01, from_m: [0.1, -0.05], "
+      "drag_m: [0.03, 0.02], after_s: 0, in_s: 1, stay_s: 0, repeats: false}",
+      4);
+
+  ASSERT_EQ(paths.size(), 4u);
+  const auto expect_fingers = [&](double at_s, double half, double x, double y) {
+    SCOPED_TRACE(at_s);
+    EXPECT_NEAR(paths[0].value_at(at_s), x - half, 1e-15);
+    EXPECT_NEAR(paths[1].value_at(at_s), y, 1e-15);
+    EXPECT_NEAR(paths[2].value_at(at_s), x + half, 1e-15);
+    EXPECT_NEAR(paths[3].value_at(at_s), y, 1e-15);
+  };
+  expect_fingers(0.0, 0.04, 0.1, -0.05);
+  expect_fingers(1.0, 0.01, 0.1, -0.05);
+  expect_fingers(2.0, 0.01, 0.13, -0.03);
+  expect_fingers(3.0, 0.04, 0.13, -0.03);
+  expect_fingers(4.0, 0.04, 0.1, -0.05);
+}
+
 TEST(Gestures, KneadPressesAndPartsSeveralTimes) {
   const auto paths = gesture_of(
       "gesture: {kind: knead, open_m: 0.05, grip_m: 0.005, depth_m: "

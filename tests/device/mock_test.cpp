@@ -125,6 +125,15 @@ TEST(Mock, SameForcesGiveTheSamePositionsToTheLastBit) {
   }
 }
 
+TEST(Mock, BeginsItsGestureAtEveryStart) {
+  Mock mock(played_by_a_hand(-0.02, 1), layout_of(1));  // which rests for 0.1 s
+  for (int life = 0; life < 2; ++life) {
+    mock.start(Role::kMass);
+    EXPECT_EQ(after(mock, 0.1, 0.0)[0], 0.0) << life;
+    EXPECT_LT(after(mock, 0.001, 0.0)[0], 0.0) << life;
+  }
+}
+
 TEST(Mock, TakesAsManySubStepsAsItsMechanicsWant) {
   MockSettings settings = played_by_a_hand(-0.02, 1);
   const Mock mock(settings, layout_of(1));
