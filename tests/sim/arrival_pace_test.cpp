@@ -18,7 +18,7 @@ constexpr double kPaceRate = 1000.0;            // [Hz]
 constexpr std::int64_t kLongTime = 20'500'000;  // [ns], of some 20 periods
 constexpr std::int64_t kLongWork = 3'000'000;   // [ns], of 3 periods
 
-/// A scene whose key nobody plays: the clock of this host alone sets the pace.
+/// A scene without a device: the clock of this host alone sets the pace.
 struct Paced {
   dds::Participant participant{{test::own_domain(), "pace", "sim"}};
   dds::Participant for_loop{{test::own_domain(), "pace", "sim-loop"}};
