@@ -367,7 +367,7 @@ TEST(Recover, MakesTakesOfTheCorpusWhole) {
   }
 }
 
-/// The same take with the indexes of its chunks in the opposite order: the format allows any.
+/// A take whose summary lists the indexes of its chunks in the opposite order: the format allows any.
 std::vector<char> with_last_chunk_first(const std::vector<char>& take) {
   const auto file = std::as_bytes(std::span(take));
   const auto last = file.last(kFooterSize + kMagic.size());
