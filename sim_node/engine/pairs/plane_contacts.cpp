@@ -161,7 +161,7 @@ void PlaneContacts::write_springs(ContactStretches& springs) const noexcept {
                        &phase_[place],
                        {&stretch_[0][place], &stretch_[1][place], &stretch_[2][place]},
                        1});
-      CORDIS_ASSERT(kept == 1);  // there is room for all pairs that are listed
+      CORDIS_ASSERT(kept == 1);
     }
     springs.end_row(a);
   }
