@@ -46,14 +46,14 @@ class PlaneContacts {
                   const MemberValues& members) noexcept;
 
   /// The most contacts that there can be; 0 without friction.
-  std::size_t most_springs() const noexcept { return phase_.size(); }
+  std::size_t max_springs() const noexcept { return phase_.size(); }
   /// The springs of friction stand here, and not in a ContactStretches.
   bool holds_springs() const noexcept { return holds_springs_; }
   /// Takes the springs of the last step. Real time: O(members * planes), no allocation.
   /// Precondition: there is friction.
   void take_springs(const ContactStretches& springs) noexcept;
   /// Writes the springs of the last step, which stand there from now on. Real time: likewise.
-  /// Preconditions: holds_springs(); there is room for most_springs().
+  /// Preconditions: holds_springs(); there is room for max_springs().
   void return_springs(ContactStretches& springs) noexcept;
   /// Likewise, and keeps them.
   void write_springs(ContactStretches& springs) const noexcept;

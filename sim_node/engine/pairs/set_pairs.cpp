@@ -157,7 +157,7 @@ SetPairs::SetPairs(const NetworkDescription& description, std::size_t index,
                           surfaces_.empty() ? neighbours_.capacity() : surfaces_.capacity());
   }
   if (!surfaces_.empty()) share_ = {};
-  if (friction_.acts()) friction_.make_room(planes_.most_springs());
+  if (friction_.acts()) friction_.make_room(planes_.max_springs());
   adopt(table);
 }
 
@@ -278,7 +278,7 @@ StepEnergy SetPairs::add_forces(const PairStep& step, const ForceColumns& column
 /// True if all that a step does is in PlaneContacts. Takes the positions of the planes.
 bool SetPairs::takes_balls_at_once(const PairStep& step, const ForceColumns& columns) noexcept {
   const bool may_rub =
-      !friction_.acts() || (!step.frozen && friction_.capacity() >= planes_.most_springs());
+      !friction_.acts() || (!step.frozen && friction_.capacity() >= planes_.max_springs());
   if (planes_.empty() || path_ != Path::kLinear || follows_variables_ || !may_rub ||
       !contacts_.empty() || !active_.are_all())
     return false;
@@ -315,7 +315,7 @@ void SetPairs::end_planes() noexcept {
 
 std::vector<StartStretch> SetPairs::contact_stretches() const {
   if (!planes_.holds_springs()) return friction_.contacts();
-  ContactStretches springs(count_p_, planes_.most_springs());
+  ContactStretches springs(count_p_, planes_.max_springs());
   planes_.write_springs(springs);
   return friction_.contacts_in(springs);
 }

@@ -33,33 +33,30 @@ double StatePotential::tension(double elongation) const {
 
 /// By Simpson's rule, exact up to the cube, in ever smaller parts where that changes it.
 double StatePotential::sum(double from, double to) const {
-  constexpr int kParts = 4;  // at least: what is narrower is not seen
   if (!(to != from)) return 0.0;
-  double all = 0.0;
-  const double width = (to - from) / kParts;
-  for (int part = 0; part < kParts; ++part) {
-    const double begin = from + part * width;
-    const double end = part + 1 == kParts ? to : begin + width;
-    all += sum_of_part({begin, tension(begin)}, {end, tension(end)}, kHalvings);
-  }
-  return all;
+  const Sample begin = sample(from);
+  const Sample middle = sample(0.5 * (from + to));
+  const Sample end = sample(to);
+  return sum_of_part(begin, sample(0.5 * (from + middle.elongation)), middle, kHalvings) +
+         sum_of_part(middle, sample(0.5 * (middle.elongation + to)), end, kHalvings);
 }
 
-double StatePotential::sum_of_part(const Sample& from, const Sample& to, int halvings) const {
-  constexpr double kAlike = 1e-10;
-  const auto simpson = [](const Sample& a, double middle, const Sample& b) {
-    return (b.elongation - a.elongation) / 6.0 * (a.tension + 4.0 * middle + b.tension);
+double StatePotential::sum_of_part(const Sample& from, const Sample& middle, const Sample& to,
+                                   int halvings) const {
+  constexpr double kAlike = 1e-8;
+  const auto simpson = [](const Sample& a, const Sample& half, const Sample& b) {
+    return (b.elongation - a.elongation) / 6.0 * (a.tension + 4.0 * half.tension + b.tension);
   };
-  const double middle = 0.5 * (from.elongation + to.elongation);
-  const Sample half{middle, tension(middle)};
-  const double whole = simpson(from, half.tension, to);
-  const double in_two = simpson(from, tension(0.5 * (from.elongation + middle)), half) +
-                        simpson(half, tension(0.5 * (middle + to.elongation)), to);
+  const Sample first = sample(0.5 * (from.elongation + middle.elongation));
+  const Sample second = sample(0.5 * (middle.elongation + to.elongation));
+  const double in_two = simpson(from, first, middle) + simpson(middle, second, to);
   const double size =
       std::abs(to.elongation - from.elongation) *
-      std::max({std::abs(from.tension), std::abs(half.tension), std::abs(to.tension)});
-  if (halvings == 0 || !(std::abs(in_two - whole) > kAlike * size)) return in_two;
-  return sum_of_part(from, half, halvings - 1) + sum_of_part(half, to, halvings - 1);
+      std::max({std::abs(from.tension), std::abs(middle.tension), std::abs(to.tension)});
+  if (halvings == 0 || !(std::abs(in_two - simpson(from, middle, to)) > kAlike * size))
+    return in_two;
+  return sum_of_part(from, first, middle, halvings - 1) +
+         sum_of_part(middle, second, to, halvings - 1);
 }
 
 double StatePotential::at(double elongation) const {

@@ -33,7 +33,9 @@ class StatePotential {
   static constexpr int kHalvings = 10;
 
   double sum(double from, double to) const;
-  double sum_of_part(const Sample& from, const Sample& to, int halvings) const;
+  Sample sample(double elongation) const { return {elongation, tension(elongation)}; }
+  double sum_of_part(const Sample& from, const Sample& middle, const Sample& to,
+                     int halvings) const;
 
   const engine::LinkState& state_;
   double rest_length_;
