@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "cli/command_line.h"
 #include "node/config/file_kind.h"
 #include "sim_node/checks/planned_scene.h"
 #include "sim_node/checks/port_body.h"
@@ -50,8 +51,8 @@ std::optional<config::Launch> launch_of(const CheckOptions& options, config::Pro
                                       : config::is_launch_file(options.file);
   if (!is_launch) {
     if (!options.overrides.empty())
-      throw std::runtime_error("'" + options.overrides[0] + "' changes a launch file, and " +
-                               options.file + " is a scene");
+      throw UsageError("'" + options.overrides[0] + "' changes a launch file, and " + options.file +
+                       " is a scene");
     return {};
   }
   config::Launch launch =

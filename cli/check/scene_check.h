@@ -77,8 +77,8 @@ struct SceneCheck {
 };
 
 /// Judges a scene, or the scene of a launch file at its devices, as `cordis run` does.
-/// @throws config::ConfigError when a file has faults, std::runtime_error for a launch file without
-/// a sim_node.
+/// @throws config::ConfigError when a file has faults, UsageError for overrides of a scene,
+/// std::runtime_error for a launch file without a sim_node.
 SceneCheck check_scene(const CheckOptions& options);
 
 }  // namespace cordis::cli

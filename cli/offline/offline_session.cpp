@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/command_line.h"
 #include "device_node/gesture_wire.h"
 #include "node/config/count_text.h"
 #include "node/config/file_kind.h"
@@ -131,8 +132,7 @@ OfflineSession::OfflineSession(const std::string& file, const std::vector<std::s
   } else if (overrides.empty()) {
     load_scene(file);
   } else {
-    throw std::runtime_error("'" + overrides[0] + "' changes a launch file, and " + file +
-                             " is a scene");
+    throw UsageError("'" + overrides[0] + "' changes a launch file, and " + file + " is a scene");
   }
   row_.resize(scene().signals.count());
   events_ = sim::EventRoom(world().network().description().state_links.size());
@@ -179,7 +179,7 @@ void OfflineSession::load_launch(const std::string& file,
     if (config.force) simulation().keep_devices();
   }
   problems.throw_if_any();
-  if (!loaded_) throw std::runtime_error(file + " has no sim_node");
+  if (!loaded_) throw UsageError(file + " has no sim_node");
 
   for (const config::LaunchNode& node : launch.nodes) {
     if (node.program != "device_node") continue;

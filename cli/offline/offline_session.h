@@ -25,7 +25,8 @@ class OfflineSession {
   /// A device whose driver is hardware stays away, its ports at rest.
   /// @param file       a launch file; or a scene, whose ports all rest
   /// @param overrides  of a launch file, as on the command line of `cordis run`
-  /// @throws config::ConfigError with all problems of the files.
+  /// @throws config::ConfigError with all problems of the files; UsageError for overrides of a scene,
+  /// and for a launch file without a sim_node.
   explicit OfflineSession(const std::string& file, const std::vector<std::string>& overrides = {});
   ~OfflineSession();
 

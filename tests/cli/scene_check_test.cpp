@@ -684,7 +684,7 @@ TEST_F(CheckedLaunch, WordsChangeALaunchFileAlone) {
   launch("realtime", "200");
   EXPECT_THROW(check({"sim.scene=/nowhere.yaml"}), config::ConfigError);
   path_ = std::exchange(scene_, path_);
-  EXPECT_EQ(run({"clock=lockstep"}), kFailure);
+  EXPECT_EQ(run({"clock=lockstep"}), kBadInput);
   EXPECT_NE(error_.find("'clock=lockstep' changes a launch file, and " + path_ + " is a scene"),
             std::string::npos)
       << error_;

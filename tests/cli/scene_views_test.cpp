@@ -254,6 +254,12 @@ TEST_F(SceneViews, RefusesLikelyMistakesInOneSentence) {
   EXPECT_THAT(refusal({"film", kSource, "-o", path("f/")}), HasSubstr("is a folder"));
   EXPECT_THAT(refusal({"film", kTake, "clock=lockstep", "-o", path("f/")}),
               HasSubstr("changes a launch file"));
+  const std::string scene = kSource + "/launch_configs/scenes/bouncing_ball.yaml";
+  for (const auto& [verb, file] :
+       {std::pair{"film", "f/"}, {"chronogram", "a.svg"}, {"plot", "a.svg"}}) {
+    EXPECT_THAT(refusal({verb, scene, "force=true", "-o", path(file)}),
+                HasSubstr("'force=true' changes a launch file"));
+  }
 
   EXPECT_THAT(refusal({"chronogram", kLaunch}), HasSubstr("say where to: -o figure.svg"));
   EXPECT_THAT(refusal({"chronogram", kLaunch, "-o", path("a.jpg")}),

@@ -630,6 +630,13 @@ TEST_F(Simulate, RefusesBeforeItSimulates) {
       {{scene, "--duration", "1s", "--mat", "ston"}, "has no MATs 'ston'; did you mean 'stone'?"},
       {{scene, "--duration", "1s", "--mat", "stone[1]"}, "picks none of the MATs stone[0..0]"},
       {{scene}, "say how long: --duration 2s"},
+      {{scene, "--duration", "1s", "force=true"},
+       "'force=true' changes a launch file, and " + scene + " is a scene"},
+      {{put("view.yaml", R"(cordis: 1
+session: s
+nodes: {view: {node: viz_node}}
+)")},
+       "view.yaml has no sim_node"},
       {{scene, "--duration", "1s", "--every", "often"}, "is none of step, tick"},
       {{scene, "--duration", "1s", "--every", "1us"}, "1us"},
       {{scene, "--duration", "1s", "--wav", path("a.wav")}, "add 'sound: true'"},
