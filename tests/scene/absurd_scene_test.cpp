@@ -138,13 +138,14 @@ TEST(AbsurdScene, OfPartsInAnEndlessRowIsRefused) {
 TEST(AbsurdScene, OfLongPartsInManyCopiesIsRefused) {
   const std::string parameters =
       repeated(2000, [](auto i, auto) { return ", a" + i + ": [1, 2, 3]"; });
+  const std::string asked = repeated(2000, [](auto i, auto) { return ", $a" + i; });
   EXPECT_EQ(problems_in(test::filled(R"(parts:
-  p: {parameters: {b: 1<parameters>}, matter: {m: {kind: fixed, at_m: [0, 0]}}}
-  q: {matter: {m: {part: p}}}
+  p: {parameters: {b: 1<parameters>, place: [$b<asked>]}, matter: {m: {kind: fixed, at_m: $place}}}
+  q: {matter: {m: {part: p, parameters: {place: [0, 0]}}}}
 matter:
   z: {part: q, repeat: {count: 40000}}
 )",
-                                     {{"parameters", parameters}})),
+                                     {{"parameters", parameters}, {"asked", asked}})),
             "the parts of the scene put more than 10000000 values into it");
 }
 

@@ -167,7 +167,7 @@ matter:
             "known keys: kind, driven, fixed, count, mass_kg, ball, center_m, radius_m, liaison, "
             "stiffness_n_per_m, viscosity_n_s_per_m, rest_m, rest, tension_n, "
             "medium_viscosity_n_s_per_m, "
-            "velocity_m_per_s, spin_rad_per_s, displacement_m, drawn_radius_m, color"},
+            "velocity_m_per_s, spin_rad_per_s, displacement_m, parameters, drawn_radius_m, color"},
         BadScene{kHead3,
                  R"(matter:
   a: {kind: ring, count: 3, mass_kg: 1, center_m: [0, 0, 0], radius_m: 1, stiffness_n_per_m: 1, plane: ^zx}
@@ -182,7 +182,7 @@ matter:
                  "stiffness_n_per_m, "
                  "viscosity_n_s_per_m, rest_m, rest, tension_n, layout_at_m, layout_spacing_m, "
                  "medium_viscosity_n_s_per_m, "
-                 "velocity_m_per_s, displacement_m, drawn_radius_m, color"},
+                 "velocity_m_per_s, displacement_m, parameters, drawn_radius_m, color"},
         BadScene{kHead2,
                  R"(matter:
   a: {kind: grid, rows: ^1, columns: 2, mass_kg: 1, corner_m: [0, 0], spacing_m: 1, stiffness_n_per_m: 1}

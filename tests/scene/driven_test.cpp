@@ -167,6 +167,11 @@ matter:
 }
 
 constexpr BadScene kBadDriven[] = {
+    {kHead1, R"(matter:
+  a: {kind: fixed, at_m: 0, driven: {parameters: {v: ^2}, displacement_m: time_s}}
+  b: {kind: mass, mass_kg: 1, at_m: 0}
+)",
+     "parameter 'v' of 'driven' of matter 'a' is used nowhere", ""},
     {kHead2,
      R"(parts:
   p: {matter: {a: {kind: fixed, at_m: [0, 0]}}}

@@ -342,6 +342,10 @@ TEST_P(BadFields, HaveOneProblemAtTheirPlace) {
 
 constexpr const char* kBob = "matter: {b: {kind: mass, mass_kg: 1, at_m: [0, 0]}}\n";
 const std::string kNoMedium = std::string("world: {flow_m_per_s: ^[1, 0]}\n") + kBob;
+const std::string kUnused = std::string("world: {parameters: {a: ^1}}\n") + kBob;
+const std::string kUnusedBeside =
+    std::string("world: {parameters: {a: 1, b: ^1}, gravity_m_per_s2: [0, \"-a * time_s\"]}\n") +
+    kBob;
 const std::string kNoName = std::string("world: {gravity_m_per_s2: [0, \"^tim_s\"]}\n") + kBob;
 const std::string kNoNumber =
     std::string("world: {gravity_m_per_s2: ^[0, \"1 / time_s\"]}\n") + kBob;
@@ -358,6 +362,8 @@ const std::string kNegative =
 INSTANTIATE_TEST_SUITE_P(
     Scene, BadFields,
     testing::Values(
+        BadScene{kHead2, kUnused.c_str(), "parameter 'a' of world is used nowhere", ""},
+        BadScene{kHead2, kUnusedBeside.c_str(), "parameter 'b' of world is used nowhere", ""},
         BadScene{kHead2, kNoMedium.c_str(),
                  "a medium that flows needs a viscosity_n_s_per_m > 0 in world, or a "
                  "medium_viscosity_n_s_per_m > 0 of matter",

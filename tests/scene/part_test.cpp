@@ -320,6 +320,15 @@ matter:
                  "'mass_kg' in matter 'm' of part 'p' must be > 0, got -3", ""},
         BadScene{kHead2,
                  R"(parts:
+  p:
+    parameters: {mass: 1, place: [0, 0], way: $place, ^len: 0.2}
+    matter: {m: {kind: mass, mass_kg: $mass, at_m: $way}}
+matter:
+  a: {part: p, repeat: {count: 6, translate_m: [1, 0]}, parameters: {len: 0.3, way: [1, 1]}}
+)",
+                 "parameter 'len' of part 'p' is used nowhere", ""},
+        BadScene{kHead2,
+                 R"(parts:
   p: {matter: {m: {kind: fixed, at_m: [0, 0]}}}
 matter:
   a: {part: p, repeat: {count: ^0}}

@@ -230,6 +230,30 @@ INSTANTIATE_TEST_SUITE_P(
                  "'displacement_m' in matter 'a' has a '(' that is never closed",
                  "put quotes around a formula with commas"},
         BadScene{kHead2,
+                 R"(matter:
+  m: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: {v: ^2}, velocity_m_per_s: [0, 6]}
+)",
+                 "parameter 'v' of matter 'm' is used nowhere", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  m: {kind: string, count: 3, from_m: [0, 0], to_m: [1, 0], mass_kg: 1, parameters: {v: ^2},
+      stiffness_n_per_m: 1}
+)",
+                 "parameter 'v' of matter 'm' is used nowhere", ""},
+        BadScene{kHead2,
+                 R"(matter:
+  m: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: {a: 1, v: ^2}, displacement_m: [a, 0]}
+)",
+                 "parameter 'v' of matter 'm' is used nowhere", ""},
+        BadScene{kHead2,
+                 R"(parts:
+  p:
+    matter:
+      m: {kind: mass, mass_kg: 1, at_m: [0, 0], parameters: {v: ^2}}
+matter: {u: {part: p, repeat: {count: 3}}}
+)",
+                 "parameter 'v' of matter 'm' of part 'p' is used nowhere", ""},
+        BadScene{kHead2,
                  R"(parts:
   p:
     parameters: {a: 1}

@@ -401,6 +401,14 @@ std::vector<std::string> ParameterValues::unused() const {
   return unused;
 }
 
+void ParameterValues::warn_of_unused(const Value& section, const std::string& what,
+                                     Problems& problems) const {
+  for (const std::string& name : unused()) {
+    problems.warning(section.find(name).place(),
+                     "parameter '" + name + "' of " + what + " is used nowhere");
+  }
+}
+
 bool is_plain_number(const Value& value) {
   if (value.kind() != Value::Kind::kScalar) return true;
   if (value.quoted()) return false;

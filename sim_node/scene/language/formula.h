@@ -31,6 +31,9 @@ class ParameterValues {
   std::vector<std::string> names() const;  ///< all names, those outside included
   /// Names of the section that find() was never asked for.
   std::vector<std::string> unused() const;
+  /// Warns of each of these. @param section  as above
+  void warn_of_unused(const config::Value& section, const std::string& what,
+                      config::Problems& problems) const;
 
  private:
   struct Evaluation;

@@ -130,10 +130,7 @@ class LiaisonReader {
     }
     reader.finish();
     if (!with_diagnostics_ || problems_.error_count() != errors_before) return law;
-    for (const std::string& name : parameters.unused()) {
-      problems_.warning(definition.find("parameters").find(name).place(),
-                        "parameter '" + name + "' of " + what + " is used nowhere");
-    }
+    parameters.warn_of_unused(definition.find("parameters"), what, problems_);
     return law;
   }
 

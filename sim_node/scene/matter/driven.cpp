@@ -176,6 +176,7 @@ std::optional<DriveSpec> read_driven(MappingReader& reader, int space,
   }
   if (problems.error_count() == errors_before) check_start_value(driven, written, space, spec);
   if (problems.error_count() != errors_before) return std::nullopt;
+  parameters.warn_of_unused(driven.optional_value("parameters"), driven.what(), problems);
   return spec;
 }
 

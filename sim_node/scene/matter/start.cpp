@@ -174,7 +174,6 @@ StartSpec read_start(MappingReader& reader, int space, bool for_each, config::Pr
             ? required_points(reader, "velocity_m_per_s", space, problems)
             : std::vector<Vec3>{optional_point(reader, "velocity_m_per_s", Vec3::Zero(), space)};
   }
-  if (!is_formula && !displacement.exists()) return spec;
   const std::size_t errors_before = problems.error_count();
   const std::span<const FormulaName> names = names_in(space);
   const ParameterValues parameters =
@@ -185,6 +184,7 @@ StartSpec read_start(MappingReader& reader, int space, bool for_each, config::Pr
   if (is_formula) spec.velocity_of = read(velocity, "velocity_m_per_s");
   if (displacement.exists()) spec.displacement_of = read(displacement, "displacement_m");
   if (problems.error_count() != errors_before) return {{Vec3::Zero()}, {}, {}, spec.spin};
+  parameters.warn_of_unused(reader.optional_value("parameters"), reader.what(), problems);
   return spec;
 }
 

@@ -128,12 +128,9 @@ WorldFields read_world(const Value& section, const std::set<std::string>& signal
                                            kExamplesOfGravity[static_cast<std::size_t>(space) - 1]);
   }
   scene.medium_flows = reader.optional_value("flow_m_per_s").exists();
-  const Value viscosity = reader.optional_value(kViscosity);
-  const bool has_formulas = scene.gravity_changes || scene.medium_flows ||
-                            (viscosity.exists() && !is_plain_number(viscosity));
+  const std::size_t errors_before = problems.error_count();
   const ParameterValues parameters =
-      has_formulas ? read_formula_parameters(reader, kNamesOfTime, "formulas of time", problems)
-                   : ParameterValues{};
+      read_formula_parameters(reader, kNamesOfTime, "formulas of time", problems);
   AskedOutside outside{signals, fields.references};
   read_viscosity(reader, parameters, outside, fields, scene, problems);
   if (scene.gravity_changes) {
@@ -143,6 +140,8 @@ WorldFields read_world(const Value& section, const std::set<std::string>& signal
     fields.flow = read_field(reader, "flow_m_per_s", space, parameters, outside, problems);
   fields.flow_place = reader.place_of("flow_m_per_s");
   reader.finish();
+  if (problems.error_count() == errors_before)
+    parameters.warn_of_unused(reader.optional_value("parameters"), reader.what(), problems);
   return fields;
 }
 

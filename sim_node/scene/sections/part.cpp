@@ -1,6 +1,9 @@
 // sim_node/scene/sections/part.cpp
 #include "sim_node/scene/sections/part.h"
 
+#include <algorithm>
+#include <cctype>
+#include <set>
 #include <utility>
 
 #include "node/config/mapping_reader.h"
@@ -13,6 +16,34 @@ namespace cordis::scene {
 namespace {
 
 using config::Value;
+
+bool is_of_name(char letter) {
+  return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '_';
+}
+
+/// Adds the names that a value asks for as `$name`, also where that cannot be computed with.
+void add_asked(const Value& value, std::set<std::string>& asked) {
+  for (const Value& item : value.items()) add_asked(item, asked);
+  for (const Value::Entry& entry : value.entries()) add_asked(entry.value, asked);
+  const std::string& text = value.text();
+  for (std::size_t dollar = text.find('$'); dollar != std::string::npos;
+       dollar = text.find('$', dollar + 1)) {
+    const auto first = text.begin() + static_cast<std::ptrdiff_t>(dollar + 1);
+    asked.emplace(first, std::find_if_not(first, text.end(), is_of_name));
+  }
+}
+
+/// Warns of the parameters that nothing of a part asks for.
+void warn_of_unused_parameters(const Part& part, config::Problems& problems) {
+  std::set<std::string> asked;
+  for (const Value* each : {&part.parameters, &part.matter, &part.ports, &part.links})
+    add_asked(*each, asked);
+  for (const Value::Entry& parameter : part.parameters.entries()) {
+    if (asked.contains(parameter.key)) continue;
+    problems.warning(parameter.key_place, "parameter '" + parameter.key + "' of part '" +
+                                              part.name + "' is used nowhere");
+  }
+}
 
 /// Puts values in the place of `$name`.
 class Substitution {
@@ -146,6 +177,7 @@ std::optional<PartBody> Parts::body(const Part& part, const Value& overrides,
   PartBody body{substitution(part.matter), substitution(part.ports), substitution(part.links)};
   value_count_ += substitution.value_count() + part.parameters.entries().size();
   if (problems_.error_count() != errors_before) return std::nullopt;
+  if (used_.insert(&part).second) warn_of_unused_parameters(part, problems_);
   return body;
 }
 

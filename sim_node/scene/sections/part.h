@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,7 @@ class Parts {
   config::Problems& problems_;
   Includes includes_;
   std::map<std::string, Part> parts_;
+  std::set<const Part*> used_;  // so that each is checked once
   std::vector<LiaisonSection> liaisons_;
   std::size_t value_count_ = 0;
 };
