@@ -184,6 +184,27 @@ signals:
   EXPECT_EQ(problems.all()[0].message, "'mass_kg' in matter 'm' of part 'p' must be > 0, got -1");
 }
 
+TEST(Part, SaysWhatIsWrongWithItBesideAFaultOfItsUse) {
+  config::Problems problems;
+  load_scene_text(scene_head(2) +
+                      R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: -1, at_m: [1, 0]}}}
+matter:
+  a: {part: p, translate_m: 3, repeat: {count: 5}}
+  b: {part: p, repeat: {count: 0}}
+signals:
+  x: {of: "a[4].m", quantity: speed}
+  y: {of: "b[1].m", quantity: speed}
+)",
+                  "t", problems);
+  std::vector<std::string> said;
+  for (const config::Problem& problem : problems.in_order()) said.push_back(problem.message);
+  EXPECT_EQ(said, (std::vector<std::string>{
+                      "'mass_kg' in matter 'm' of part 'p' must be > 0, got -1",
+                      "'translate_m' in matter 'a' must have 2 numbers, got 1",
+                      "'count' in 'repeat' of matter 'b' must be between 1 and 1000000, got 0"}));
+}
+
 class PartFiles : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder / "parts"); }

@@ -312,6 +312,32 @@ signals:
                 "missing key 'axis' in signal 'x'", "unknown key 'unit' in signal 'y'"}));
 }
 
+TEST(SignalReader, SaysWhatIsWrongWithASignalOfAPartThatIsWrongItself) {
+  config::Problems problems;
+  load_scene_text(scene_head(1) + R"(parts:
+  note: {matter: {s: {kind: string, count: 3, mass_kg: -1, stiffness_n_per_m: 1}}}
+matter: {harp: {part: note, repeat: {count: 2}}}
+signals:
+  a: {of: harp.s, quantity: force, take: sum, axis: y}
+  b: {of: harp.s, quantity: force, take: most, sound: maybe}
+  c: {of: harp.s, quantity: speed, take: mean, rate: often, full_scale: 2}
+  d: {of: harp.s, quantity: pieces, near_m: 0}
+  e: {of: harp.s, quantity: contact_force, by: bow}
+)",
+                  "t", problems);
+  std::vector<std::string> said;
+  for (const config::Problem& problem : problems.in_order()) said.push_back(problem.message);
+  EXPECT_EQ(said, (std::vector<std::string>{
+                      "'mass_kg' in matter 's' of part 'note' must be > 0, got -1",
+                      "'axis' in signal 'a' must be one of x, got 'y'",
+                      "'take' in signal 'b' must be one of largest, smallest, mean, sum, got "
+                      "'most'",
+                      "'sound' in signal 'b' must be true or false, got 'maybe'",
+                      "'rate' in signal 'c' must be one of gesture, step, got 'often'",
+                      "'full_scale' is of a sound", "'near_m' in signal 'd' must be > 0, got 0",
+                      "no matter or port is named 'bow'"}));
+}
+
 TEST(SignalReader, OfEachStepAreThoseThatSayRateStepOrSound) {
   Observed run(sound_scene(2,
                            R"(matter:

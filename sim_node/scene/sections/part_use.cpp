@@ -23,6 +23,7 @@ namespace {
 /// An entry of `matter:` that uses a part, while it is read.
 struct PartUse {
   const Part* part = nullptr;
+  bool is_sound = true;  ///< false: it has a problem, and one copy shows those of the part
   PartBody body;
   Placement placement;
   Placement step;                        ///< from one copy to the next
@@ -80,13 +81,14 @@ std::optional<PartUse> read_use(Assembly& assembly, const Value::Entry& entry) {
                                            " levels within each other");
     return std::nullopt;
   }
+  use.is_sound = assembly.problems.error_count() == errors_before;
   const std::optional<PartBody> body = assembly.parts.body(*use.part, overrides, entry.key_place);
   if (body && assembly.parts.value_count() > kMaxPartValues) {
     assembly.refuse_more(entry.key_place, "the parts of the scene put more than " +
                                               std::to_string(kMaxPartValues) + " values into it");
     return std::nullopt;
   }
-  if (!body || assembly.problems.error_count() != errors_before) return std::nullopt;
+  if (!body) return std::nullopt;
   use.body = *body;
   return use;
 }
@@ -171,13 +173,14 @@ bool shift_axes(Assembly& assembly, std::uint32_t copy, std::size_t first_port,
 bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
   const std::optional<PartUse> use = read_use(assembly, entry);
   const std::uint32_t first = assembly.mat_count();
-  bool sound = use.has_value();
+  bool sound = use.has_value();  // at first of the copies alone
+  const std::uint32_t copies = use ? std::min(use->copies, use->is_sound ? use->copies : 1) : 0;
   if (sound && use->copies == 0) {
     sound =
         count_use(assembly, entry.key_place) && add_copy(assembly, *use, entry.key, use->placement);
   }
   Placement copy_placement;
-  for (std::uint32_t copy = 0; sound && copy < use->copies; ++copy) {
+  for (std::uint32_t copy = 0; sound && copy < copies; ++copy) {
     const std::string name = entry.key + "[" + std::to_string(copy) + "]";
     const std::uint32_t first_of_copy = assembly.mat_count();
     const std::size_t first_port = assembly.scene.ports.size();
@@ -191,6 +194,7 @@ bool read_part_use(Assembly& assembly, const Value::Entry& entry) {
   }
   // the faults of a part are reported once, however often it is used
   if (use && !sound) assembly.faulty_parts.insert(use->part);
+  sound = sound && use->is_sound;
   if (sound && use->is_fixed) {
     const std::size_t errors_before = assembly.problems.error_count();
     fix_part(assembly, first, matter_called(assembly, entry.key), use->fixed_place);

@@ -151,10 +151,16 @@ void read_signal_of_body(Assembly& assembly, config::MappingReader& reader, Sign
   signals.push_back(std::move(signal));
 }
 
+/// What may be taken of many, in the order of engine::Take.
+const std::vector<std::string>& words_of_take() {
+  static const std::vector<std::string> words{"largest", "smallest", "mean", "sum"};
+  return words;
+}
+
 /// Reads what is taken of the values of many MATs, or of many links of one kind.
 void read_signal_of_many(Assembly& assembly, config::MappingReader& reader, Signal signal,
                          const Selection& picked, std::vector<Signal>& signals) {
-  const std::vector<std::string> takes{"largest", "smallest", "mean", "sum"};
+  const std::vector<std::string>& takes = words_of_take();
   const auto take = std::ranges::find(takes, reader.required_choice("take", takes));
   signal.take = static_cast<engine::Take>(take - takes.begin() + 1);
   engine::VariableGroup group;
@@ -236,6 +242,43 @@ void read_count_of_links(const Assembly& assembly, config::MappingReader& reader
   signals.push_back(std::move(signal));
 }
 
+/// Words that are a quantity of something, each once.
+std::vector<std::string> known_quantities() {
+  std::vector<std::string> known;
+  for (const QuantityWord& quantity : quantity_words()) {
+    if (std::ranges::find(known, quantity.word) == known.end()) known.emplace_back(quantity.word);
+  }
+  return known;
+}
+
+/// Checks a signal of something that has a problem itself: what is wrong whatever that is.
+void check_unowned_signal(Assembly& assembly, config::MappingReader& reader, const Value& subject) {
+  const int space = assembly.scene.space();
+  const std::string word = reader.required_text("quantity");
+  const std::vector<std::string> known = known_quantities();
+  if (!word.empty() && std::ranges::find(known, word) == known.end()) {
+    reader.error_at("quantity", "nothing has a quantity '" + word + "'",
+                    config::did_you_mean(word, known));
+  }
+  const QuantityWord* of_mat = find_quantity(Owner::kMat, word);
+  const NameEntry* name = assembly.names.find(subject.text());
+  const bool is_of_matter = name != nullptr && name->kind == Named::kMatter;
+  const bool needs_axis = of_mat != nullptr && of_mat->has_direction && is_of_matter && space > 1;
+  if (needs_axis || reader.has("axis")) reader.required_choice("axis", axis_words(space));
+  if (reader.has("take")) reader.required_choice("take", words_of_take());
+  if (reader.has("by")) {
+    (void)select(reader.optional_value("by"), reader.name_of("by"), false, assembly.names,
+                 assembly.problems);
+  }
+  if (reader.has("near_m")) reader.required_number("near_m", config::Range::positive());
+  if (reader.has("about_m")) optional_point(reader, "about_m", Vec3::Zero(), space);
+  Signal signal;
+  read_rate(reader, signal);
+  for (const char* key : {"axis", "take", "by", "near_m", "about_m", "full_scale"})
+    reader.optional_value(key);
+  reader.finish();
+}
+
 /// What `of` lists, where a liaison of sets is among it.
 struct JoinedLiaisons {
   std::vector<std::uint32_t> sets;
@@ -262,7 +305,7 @@ void read_count_of_several(Assembly& assembly, config::MappingReader& reader,
   for (const Value& other : joined.others) {
     const std::optional<Selection> picked =
         select(other, "'of' in " + reader.what(), true, assembly.names, assembly.problems);
-    if (!picked) return;
+    if (!picked) return check_unowned_signal(assembly, reader, other);
     for (const std::uint32_t link : picked->indices) {
       if (picked->kind == Named::kLinks && kind_of_link(link) == LinkKind::kState) {
         signal.state_links.push_back(index_of_link(link));
@@ -270,7 +313,7 @@ void read_count_of_several(Assembly& assembly, config::MappingReader& reader,
       }
       assembly.problems.error(other.place(),
                               "beside liaisons of sets a signal is of links with states");
-      return;
+      return check_unowned_signal(assembly, reader, other);
     }
   }
   for (std::vector<std::uint32_t>* list : {&signal.state_links, &joined.sets}) {
@@ -310,34 +353,6 @@ void refuse_unknown_keys(const Value::Entry& entry, config::MappingReader& reade
     }
     problems.error(key.key_place, "unknown key '" + key.key + "' in " + reader.what(), hint);
   }
-}
-
-/// Words that are a quantity of something, each once.
-std::vector<std::string> known_quantities() {
-  std::vector<std::string> known;
-  for (const QuantityWord& quantity : quantity_words()) {
-    if (std::ranges::find(known, quantity.word) == known.end()) known.emplace_back(quantity.word);
-  }
-  return known;
-}
-
-/// Checks a signal of something that has a problem itself: what is wrong whatever that is.
-void check_unowned_signal(const Assembly& assembly, config::MappingReader& reader,
-                          const Value& subject) {
-  const std::string word = reader.required_text("quantity");
-  const std::vector<std::string> known = known_quantities();
-  if (!word.empty() && std::ranges::find(known, word) == known.end()) {
-    reader.error_at("quantity", "nothing has a quantity '" + word + "'",
-                    config::did_you_mean(word, known));
-  }
-  const QuantityWord* of_mat = find_quantity(Owner::kMat, word);
-  const NameEntry* name = assembly.names.find(subject.text());
-  const bool is_of_matter = name != nullptr && name->kind == Named::kMatter;
-  if (of_mat != nullptr && of_mat->has_direction && is_of_matter && assembly.scene.space() > 1)
-    reader.required_choice("axis", axis_words(assembly.scene.space()));
-  for (const char* key : {"axis", "take", "by", "near_m", "about_m", "sound", "rate", "full_scale"})
-    reader.optional_value(key);
-  reader.finish();
 }
 
 void read_signal(Assembly& assembly, const Value::Entry& entry, std::vector<Signal>& signals) {
