@@ -157,7 +157,7 @@ void StatusSnapshot::fill(msg::NodeStatus& status, const std::string& refusal,
 void StatusSnapshot::fill_figures(msg::NodeStatus& status) const {
   const engine::Energy& energy = figures_.of_world.energy;
   status.energy_j(energy.total());
-  status.energy_drift(energy.largest > 0.0 ? energy.residual() / energy.largest : 0.0);
+  status.energy_drift(energy.drift());
   status.integration_error_j(energy.integration_error());
   status.overflowed_steps(figures_.troubles.overflowed_steps);
   status.forgotten_pairs(figures_.troubles.forgotten_pairs);

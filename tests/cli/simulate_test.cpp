@@ -504,6 +504,38 @@ TEST_F(Simulate, EndsWhereTheEnergyIsNoFiniteNumber) {
   }
 }
 
+TEST_F(Simulate, SaysOfNoFigureThatItIs0WhereTheEnergyIsNoFiniteNumber) {
+  const std::string scene = put("lost.yaml", R"(cordis: 1
+name: lost
+space: 1
+step: {rate_hz: 136.2945839943363, gesture_rate_hz: 136.2945839943363}
+matter:
+  g: {kind: fixed, at_m: 0}
+  b: {kind: mass, mass_kg: 1, at_m: 0}
+liaisons:
+  first:
+    rest_m: 0
+    states:
+      idle: {stiffness_n_per_m: 50, exits: [{to: loaded, when: age_s > 0.3, rest: 0.8}]}
+      loaded: {stiffness_n_per_m: 50, final: true}
+  latch:
+    rest_m: 0
+    states:
+      free: {stiffness_n_per_m: 50, exits: [{to: loaded, when: elongation_m > 0.5}]}
+      loaded: {stiffness_n_per_m: 5000, exits: [{to: gone, when: elongation_m < 0.001}]}
+      gone: {stiffness_n_per_m: 1, final: true}
+  cubic: {rest_m: 0, elasticity: {kind: power, coefficient: 10000, exponent: 15}}
+links:
+  - {liaison: first, between: [g, b]}
+  - {liaison: latch, between: [g, b]}
+  - {liaison: cubic, between: [g, b]}
+)");
+  EXPECT_EQ(run({scene, "--duration", "2s", "--summary", path("n.json")}), kFailure) << error_;
+  const auto json = nlohmann::json::parse(text_of("n.json"));
+  for (const char* figure : {"energy_j", "energy_drift", "integration_error_j", "largest_energy_j"})
+    EXPECT_TRUE(json[figure].is_null()) << figure << ' ' << json[figure];
+}
+
 TEST_F(Simulate, JudgesAPowerOfTheSpeedByTheSpeedInReach) {
   const std::string scene = put("modes.yaml",
                                 R"(cordis: 1

@@ -64,6 +64,8 @@ struct Energy {
   double residual() const noexcept {
     return total() - initial - port_work - switching + dissipated;
   }
+  /// The residual over the largest entry; 0 where all were 0. NaN where one was no finite number.
+  double drift() const noexcept { return largest == 0.0 ? 0.0 : residual() / largest; }
 };
 
 }  // namespace cordis::engine
