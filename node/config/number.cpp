@@ -42,6 +42,11 @@ std::string hint_for_number(const Value& value) {
   if (end == plain.data() + plain.size())
     return value.quoted() ? "write it without quotes" : std::string{};
   if (*end == ',') return "write a decimal point, not a comma";
+  const std::size_t operation =
+      plain.find_first_not_of(' ', static_cast<std::size_t>(end - plain.data()));
+  if (operation != std::string_view::npos &&
+      std::string_view("*/+-^(").find(plain[operation]) != std::string_view::npos)
+    return kNoFormula;
   if (*end == ' ' || std::isalpha(static_cast<unsigned char>(*end)) != 0) {
     return "write the number alone; its unit stands in the key";
   }

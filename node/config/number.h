@@ -32,6 +32,9 @@ double read_number(const Value& value, const std::string& what, double fallback,
 long read_integer(const Value& value, const std::string& what, long fallback, long lowest,
                   long highest, Problems& problems);
 
+/// The hint for a formula in the place of a number.
+inline constexpr const char* kNoFormula = "write one number: this takes no formula";
+
 /// A number in a short form that reads back as itself, for messages.
 std::string number_text(double number);
 

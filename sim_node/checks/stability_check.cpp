@@ -171,8 +171,9 @@ void check_stability(const scene::Scene& scene, const plan::Stability& stability
     problems.warning(place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
                      hint);
   } else {
-    problems.error(place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
-                   hint + "; or run it all the same with force=true of its sim_node");
+    problems.error(
+        place, "at " + std::to_string(rate) + " Hz the scene is unstable: " + limit,
+        hint + "; or run it all the same by a launch file with force: true of its sim_node");
   }
 }
 

@@ -82,10 +82,12 @@ bool fits(const scene::Scene& scene, const engine::Snapshot& snapshot,
           const std::string& scene_name, config::Problems& problems) {
   const auto network = std::make_shared<const engine::Network>(scene.network);
   if (network->fingerprint() != snapshot.network) {
-    problems.error(
-        scene.start_state_place,
-        "'" + scene.start_state_file + "' holds a state of another scene, '" + scene_name + "'",
-        "a state fits the matter, links, start, step and integrator it was saved with");
+    const bool has_same_name = quoted(scene.name) == quoted(scene_name);
+    problems.error(scene.start_state_place,
+                   "'" + scene.start_state_file + "' holds a state of " +
+                       (has_same_name ? "'" + scene_name + "', which has changed since"
+                                      : "another scene, '" + scene_name + "'"),
+                   "a state fits the matter, links, start, step and integrator it was saved with");
     return false;
   }
   try {

@@ -103,6 +103,9 @@ TEST_F(Checked, AnUnstableOneFailsUnlessForced) {
       error_.find(path_ + ":11:32: error: at 40 Hz the scene is unstable: holder at the mass "),
       std::string::npos)
       << error_;
+  EXPECT_NE(error_.find("or run it all the same by a launch file with force: true of its sim_node"),
+            std::string::npos)
+      << error_;
   EXPECT_EQ(run({"--force"}), kSuccess);
   EXPECT_NE(error_.find("warning: at 40 Hz the scene is unstable"), std::string::npos) << error_;
 }

@@ -248,6 +248,8 @@ TEST(MappingReader, RefusesWhatIsNoNumber) {
   EXPECT_EQ(hint_for_number("0,5"), "write a decimal point, not a comma");
   EXPECT_EQ(hint_for_number("5 kg"), "write the number alone; its unit stands in the key");
   EXPECT_EQ(hint_for_number("5kg"), "write the number alone; its unit stands in the key");
+  for (const char* formula : {"3000 * 1.2599", "3000*1.2599", "5/8", "2^0.5", "3 + a", "2 (3)"})
+    EXPECT_EQ(hint_for_number(formula), "write one number: this takes no formula") << formula;
 }
 
 TEST(MappingReader, TakesEveryWayToWriteANumber) {

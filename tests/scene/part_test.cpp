@@ -350,6 +350,14 @@ matter:
                  "parameter 'len' of part 'p' is used nowhere", ""},
         BadScene{kHead2,
                  R"(parts:
+  p: {matter: {m: {kind: mass, mass_kg: $mass, at_m: [0, 0]}}, parameters: {mass: 1}}
+matter:
+  a: {part: p, parameters: {mass: ^3 * 1.2599}}
+)",
+                 "'mass_kg' in matter 'm' of part 'p' must be a number, got '3 * 1.2599'",
+                 "write one number: this takes no formula"},
+        BadScene{kHead2,
+                 R"(parts:
   p: {matter: {m: {kind: fixed, at_m: [0, 0]}}}
 matter:
   a: {part: p, repeat: {count: ^0}}

@@ -67,6 +67,15 @@ links:
                                {{"mass", mass}}));
   }
 
+  /// A scene of scene(), with another name.
+  std::string renamed(const std::string& file, const std::string& name) const {
+    std::ifstream stream(folder_ / file);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const std::string before = "\"a 'heap'\"";
+    text.replace(text.find(before), before.size(), name);
+    return write(file, text);
+  }
+
   static std::shared_ptr<const scene::Scene> planned(const std::string& file) {
     config::Problems problems;
     PlannedScene planned = plan_scene(file, {}, problems);
@@ -193,8 +202,14 @@ step: {rate_hz: 1000}
 TEST_F(StartState, OfAnotherSceneIsRefused) {
   write("run.state", saved_after(scene("whole.yaml", ""), 3));
 
-  const std::string text = problems_of(scene("other.yaml", "start_state: run.state\n", "0.011"));
+  const std::string changed = problems_of(scene("other.yaml", "start_state: run.state\n", "0.011"));
+  EXPECT_NE(changed.find("other.yaml:5:14: error: 'run.state' holds a state of 'a 'heap'', which "
+                         "has changed since"),
+            std::string::npos)
+      << changed;
 
+  scene("other.yaml", "start_state: run.state\n", "0.011");
+  const std::string text = problems_of(renamed("other.yaml", "lump"));
   EXPECT_NE(
       text.find("other.yaml:5:14: error: 'run.state' holds a state of another scene, 'a 'heap''"),
       std::string::npos)

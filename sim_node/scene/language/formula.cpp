@@ -417,6 +417,7 @@ bool is_plain_number(const Value& value) {
   if (!of_number.has_errors()) return true;
   const config::Problem& problem = of_number.all().front();
   if (problem.message.find("must be a number") == std::string::npos) return true;
+  if (problem.hint == config::kNoFormula) return false;
   Problems of_formula;
   return !problem.hint.empty() && !parse_expression(value, "", of_formula);
 }
