@@ -1,6 +1,7 @@
 // sim_node/engine/pairs/contact_stretches.h -- what contacts remember of their friction.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -87,7 +88,7 @@ class ContactStretches {
     std::vector<std::uint32_t> column;
     std::vector<std::uint32_t> state;
     std::vector<double> phase;
-    std::vector<double> stretch[3];  // [m]
+    std::array<std::vector<double>, 3> stretch;  // [m]
 
     StretchRows rows(std::size_t first, std::size_t last) const noexcept;
     template <class Do>

@@ -153,8 +153,8 @@ void read_signal_of_body(Assembly& assembly, config::MappingReader& reader, Sign
 
 /// What may be taken of many, in the order of engine::Take.
 const std::vector<std::string>& words_of_take() {
-  static const std::vector<std::string> words{"largest", "smallest", "mean", "sum"};
-  return words;
+  static const std::vector<std::string> kTakes{"largest", "smallest", "mean", "sum"};
+  return kTakes;
 }
 
 /// Reads what is taken of the values of many MATs, or of many links of one kind.
