@@ -92,12 +92,12 @@ bool Hardware::is_silent(std::int64_t now) const noexcept {
 
 void Hardware::stop() noexcept {
   coupling_n_.fill(0.0);
-  if (contact_ == Contact::kPresent) ask({});
+  if (contact_ == Contact::kPresent) ask({});  // which may lose the device
+  if (contact_ == Contact::kGreeting) release_motors();
   if (contact_ == Contact::kLost && may_hold_force_) {
     next_try_nsec_ = 0;
-    try_to_open(node::monotonic_nsec());
+    try_to_open(node::monotonic_nsec());  // greets with no force
   }
-  if (contact_ == Contact::kGreeting) release_motors();
 }
 
 /// The motors of a board that does not answer.

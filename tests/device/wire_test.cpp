@@ -101,6 +101,24 @@ class BlockedLine : public ::testing::Test {
     return all;
   }
 
+  static constexpr std::array<std::uint8_t, 3> kRelease{0xa5, 0x5a, 0xff};
+
+  /// Opens the line, fills it, and takes the force from the motors.
+  void release_while_full() {
+    ReleaseFrame release;
+    std::copy(kRelease.begin(), kRelease.end(), release.bytes.begin());
+    release.length = kRelease.size();
+    wire_->set_release(release);
+    ASSERT_TRUE(wire_->open());
+    ASSERT_NE(fill(), 0);
+    wire_->release();
+  }
+
+  static bool ends_with_release(const Bytes& all) {
+    return all.size() >= kRelease.size() &&
+           std::equal(kRelease.begin(), kRelease.end(), all.end() - kRelease.size());
+  }
+
   int master_ = -1;
   std::unique_ptr<Wire> wire_;
 };
@@ -126,29 +144,16 @@ TEST_F(BlockedLine, NoMessageBeginsInTheMiddleOfAnother) {
 }
 
 TEST_F(BlockedLine, TheReleaseFrameGoesBeforeAllThatWaits) {
-  ReleaseFrame release;
-  release.bytes = {0xa5, 0x5a, 0xff};
-  release.length = 3;
-  wire_->set_release(release);
-  ASSERT_TRUE(wire_->open());
-  ASSERT_NE(fill(), 0);
+  ASSERT_NO_FATAL_FAILURE(release_while_full());
 
-  wire_->release();
-
-  const Bytes all = read_until(3);
-  ASSERT_GE(all.size(), 3u);
-  EXPECT_EQ(Bytes(all.end() - 3, all.end()), (Bytes{0xa5, 0x5a, 0xff}));
+  const Bytes all = read_until(kRelease.size());
+  ASSERT_GE(all.size(), kRelease.size());
+  EXPECT_TRUE(ends_with_release(all));
 }
 
 /// A board that reads late gets the release frame of a line that was closed and opened again since.
 TEST_F(BlockedLine, TheReleaseFrameOutlivesTheNextOpening) {
-  ReleaseFrame release;
-  release.bytes = {0xa5, 0x5a, 0xff};
-  release.length = 3;
-  wire_->set_release(release);
-  ASSERT_TRUE(wire_->open());
-  ASSERT_NE(fill(), 0);
-  wire_->release();
+  ASSERT_NO_FATAL_FAILURE(release_while_full());
 
   wire_->close();
   ASSERT_TRUE(wire_->open());
@@ -157,7 +162,7 @@ TEST_F(BlockedLine, TheReleaseFrameOutlivesTheNextOpening) {
   EXPECT_TRUE(test::eventually([&] {
     const Bytes more = read_all();
     all.insert(all.end(), more.begin(), more.end());
-    return all.size() >= 3 && Bytes(all.end() - 3, all.end()) == Bytes{0xa5, 0x5a, 0xff};
+    return ends_with_release(all);
   }));
 }
 

@@ -26,13 +26,6 @@ SavedContact contact_at(const StretchRows& contacts, std::size_t i) noexcept {
           contacts.stretch[0][i], contacts.stretch[1][i], contacts.stretch[2][i]};
 }
 
-double square_at(const StretchRows& contacts, std::size_t i) noexcept {
-  const double x = contacts.stretch[0][i];
-  const double y = contacts.stretch[1][i];
-  const double z = contacts.stretch[2][i];
-  return x * x + y * y + z * z;
-}
-
 }  // namespace
 
 StretchRows ContactStretches::Table::rows(std::size_t first, std::size_t last) const noexcept {
@@ -102,9 +95,9 @@ double ContactStretches::sum_of_squares() const noexcept {
   const std::size_t whole = all.count - all.count % kPairBatch;
   for (std::size_t i = 0; i < whole; i += kPairBatch) {
     for (std::size_t place = 0; place < kPairBatch; ++place)
-      sum.sums[place] += square_at(all, i + place);
+      sum.sums[place] += all.square(i + place);
   }
-  for (std::size_t i = whole; i < all.count; ++i) sum.sums[i - whole] += square_at(all, i);
+  for (std::size_t i = whole; i < all.count; ++i) sum.sums[i - whole] += all.square(i);
   return sum.all();
 }
 
@@ -114,7 +107,7 @@ double ContactStretches::sum_by_member() const noexcept {
     const StretchRows of_row = row(a);
     SumByPlace squares;
     for (std::size_t i = 0; i < of_row.count; ++i)
-      squares.sums[of_row.column[i] / 4 % kPairBatch] += square_at(of_row, i);
+      squares.sums[of_row.column[i] / 4 % kPairBatch] += of_row.square(i);
     sum.add(squares.sums);
   }
   return sum.all();

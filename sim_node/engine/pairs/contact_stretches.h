@@ -20,6 +20,14 @@ struct StretchRows {
   const double* phase = nullptr;          // kSticks or kSlides
   const double* stretch[3] = {};          // [m]
   std::size_t count = 0;
+
+  /// The square of the stretch of a contact [m^2].
+  double square(std::size_t i) const noexcept {
+    const double x = stretch[0][i];
+    const double y = stretch[1][i];
+    const double z = stretch[2][i];
+    return x * x + y * y + z * z;
+  }
 };
 
 /// A sum of 8 sums by the place, which fill vector registers.

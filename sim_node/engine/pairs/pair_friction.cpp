@@ -90,12 +90,7 @@ double PairFriction::energy_of_springs() const noexcept {
   }
   const StretchRows all = stretches_.written();
   double sum = 0.0;
-  for (std::size_t i = 0; i < all.count; ++i) {
-    const double x = all.stretch[0][i];
-    const double y = all.stretch[1][i];
-    const double z = all.stretch[2][i];
-    sum += terms_[all.state[i]].stiffness * (x * x + y * y + z * z);
-  }
+  for (std::size_t i = 0; i < all.count; ++i) sum += terms_[all.state[i]].stiffness * all.square(i);
   return 0.5 * sum;
 }
 

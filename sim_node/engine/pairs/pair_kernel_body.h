@@ -14,6 +14,31 @@ unsigned first_lanes(std::size_t count) noexcept {
   return count < Lanes::kWidth ? (1U << count) - 1U : (1U << Lanes::kWidth) - 1U;
 }
 
+/// The vectors of the lanes of a mask, 0 in the others.
+template <class Lanes>
+typename Lanes::Row3 only(typename Lanes::Mask mask, const typename Lanes::Row3& v) noexcept {
+  return {Lanes::select(mask, v.x, Lanes::zero()), Lanes::select(mask, v.y, Lanes::zero()),
+          Lanes::select(mask, v.z, Lanes::zero())};
+}
+
+template <class Lanes>
+typename Lanes::Row3 plus(const typename Lanes::Row3& a, const typename Lanes::Row3& b) noexcept {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+/// A register of vectors, from three arrays.
+template <class Lanes>
+typename Lanes::Row3 load_vectors(const double* const* arrays, std::size_t i) noexcept {
+  return {Lanes::load(arrays[0] + i), Lanes::load(arrays[1] + i), Lanes::load(arrays[2] + i)};
+}
+
+template <class Lanes>
+void store_vectors(double* const* arrays, std::size_t i, const typename Lanes::Row3& v) noexcept {
+  Lanes::store(arrays[0] + i, v.x);
+  Lanes::store(arrays[1] + i, v.y);
+  Lanes::store(arrays[2] + i, v.z);
+}
+
 template <class Lanes>
 std::size_t find_near(const CellTable& table, std::size_t begin, std::size_t end,
                       const NearQuery& query, std::uint32_t* found) noexcept {
@@ -418,10 +443,8 @@ template <class Lanes>
 void spread_vectors(const PairRows& rows, const double* factor, const FrictionRows& friction,
                     double* force) noexcept {
   spread_all<Lanes>(rows, factor, force, [&](std::size_t i) noexcept {
-    const typename Lanes::Row3 along = along_pairs<Lanes>(rows.pairs, i, factor);
-    return typename Lanes::Row3{along.x + Lanes::load(friction.force[0] + i),
-                                along.y + Lanes::load(friction.force[1] + i),
-                                along.z + Lanes::load(friction.force[2] + i)};
+    return plus<Lanes>(along_pairs<Lanes>(rows.pairs, i, factor),
+                       load_vectors<Lanes>(friction.force, i));
   });
 }
 
@@ -503,14 +526,6 @@ typename Lanes::Row3 slid(const MemberColumns& members, const PairRows& rows, st
   const auto along = Lanes::load(rows.pairs.elongation_increment + i);
   return {(b.x - a.x) - along * normal.x, (b.y - a.y) - along * normal.y,
           (b.z - a.z) - along * normal.z};
-}
-
-template <class Lanes>
-void store_in(double* const* arrays, std::size_t i, typename Lanes::Mask mask,
-              const typename Lanes::Row3& v) noexcept {
-  Lanes::store(arrays[0] + i, Lanes::select(mask, v.x, Lanes::zero()));
-  Lanes::store(arrays[1] + i, Lanes::select(mask, v.y, Lanes::zero()));
-  Lanes::store(arrays[2] + i, Lanes::select(mask, v.z, Lanes::zero()));
 }
 
 /// The spring of a contact that slides is never shorter, for it has the direction in which it slides.
@@ -612,8 +627,8 @@ void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
     auto touches = Lanes::less(none, push);
     if constexpr (kOfEach) touches = Lanes::both(touches, Lanes::less(none, term.stiffness));
     if (Lanes::bits(touches) == 0U) {
-      store_in<Lanes>(friction.stretch, i, touches, {none, none, none});
-      store_in<Lanes>(friction.force, i, touches, {none, none, none});
+      store_vectors<Lanes>(friction.stretch, i, {none, none, none});
+      store_vectors<Lanes>(friction.force, i, {none, none, none});
       Lanes::store(friction.phase + i, none);
       continue;
     }
@@ -621,12 +636,11 @@ void friction_of_pairs(const FrictionTerms& terms, const MemberColumns& members,
     const Row3 normal{Lanes::load(row.x + i) * inverse, Lanes::load(row.y + i) * inverse,
                       Lanes::load(row.z + i) * inverse};
     const Row3 way = slid<Lanes>(members, rows, i, normal);
-    const Row3 stretch{Lanes::load(friction.stretch[0] + i), Lanes::load(friction.stretch[1] + i),
-                       Lanes::load(friction.stretch[2] + i)};
     const Rubbing<Lanes> rubbing =
-        rub<Lanes>(term, push, normal, way, stretch, Lanes::load(friction.phase + i));
-    store_in<Lanes>(friction.stretch, i, touches, rubbing.stretch);
-    store_in<Lanes>(friction.force, i, touches, rubbing.force);
+        rub<Lanes>(term, push, normal, way, load_vectors<Lanes>(friction.stretch, i),
+                   Lanes::load(friction.phase + i));
+    store_vectors<Lanes>(friction.stretch, i, only<Lanes>(touches, rubbing.stretch));
+    store_vectors<Lanes>(friction.force, i, only<Lanes>(touches, rubbing.force));
     Lanes::store(friction.phase + i, Lanes::select(touches, rubbing.phase, none));
   }
 }

@@ -10,13 +10,6 @@
 
 namespace cordis::engine {
 
-/// The vectors of the lanes of a mask, 0 in the others.
-template <class Lanes>
-typename Lanes::Row3 only(typename Lanes::Mask mask, const typename Lanes::Row3& v) noexcept {
-  return {Lanes::select(mask, v.x, Lanes::zero()), Lanes::select(mask, v.y, Lanes::zero()),
-          Lanes::select(mask, v.z, Lanes::zero())};
-}
-
 /// Bits of the factors that are not 0: each counts for a partner.
 template <class Lanes>
 unsigned partners_of(typename Lanes::Row factor) noexcept {
@@ -34,13 +27,7 @@ typename Lanes::Row3 tension_of(const typename Lanes::Row3& normal, typename Lan
                                 const typename Lanes::Row3& friction) noexcept {
   const typename Lanes::Row3 along = scaled<Lanes>(normal, factor);
   if constexpr (!kRubs) return along;
-  return {along.x + friction.x, along.y + friction.y, along.z + friction.z};
-}
-
-/// A register of vectors, from three arrays.
-template <class Lanes>
-typename Lanes::Row3 vectors_at(const double* const* arrays, std::size_t i) noexcept {
-  return {Lanes::load(arrays[0] + i), Lanes::load(arrays[1] + i), Lanes::load(arrays[2] + i)};
+  return plus<Lanes>(along, friction);
 }
 
 /// Adds whole batches of forces to the sums of a plane.
@@ -59,7 +46,7 @@ void add_forces(const PlaneRow& plane, std::size_t count, const ValuesOfPairs* f
         across = {Lanes::load(friction[0] + i), Lanes::load(friction[1] + i),
                   Lanes::load(friction[2] + i)};
       const Row3 tension = tension_of<Lanes, kRubs>(normal, Lanes::load(sum.factor + i), across);
-      all = {all.x + tension.x, all.y + tension.y, all.z + tension.z};
+      all = plus<Lanes>(all, tension);
     }
     Lanes::store(sum.force[0] + place, all.x);
     Lanes::store(sum.force[1] + place, all.y);
@@ -167,12 +154,10 @@ template <class Lanes>
   }
   const Row3 across{way.x - along * normal.x, way.y - along * normal.y, way.z - along * normal.z};
   const Rubbing<Lanes> rubbing =
-      rub<Lanes>(term, push, normal, across, vectors_at<Lanes>(friction.stretch, place),
+      rub<Lanes>(term, push, normal, across, load_vectors<Lanes>(friction.stretch, place),
                  Lanes::load(friction.phase + place));
   const Row3 stretch = only<Lanes>(touches, rubbing.stretch);
-  Lanes::store(friction.stretch[0] + place, stretch.x);
-  Lanes::store(friction.stretch[1] + place, stretch.y);
-  Lanes::store(friction.stretch[2] + place, stretch.z);
+  store_vectors<Lanes>(friction.stretch, place, stretch);
   Lanes::store(friction.phase + place, Lanes::select(touches, rubbing.phase, Lanes::zero()));
   Lanes::store(squares, Lanes::load(squares) + dot<Lanes>(stretch, stretch));
   return only<Lanes>(touches, rubbing.force);
@@ -291,7 +276,7 @@ template <class Lanes, bool kViscous, bool kRubs>
   }
   const Row3 normal = every<Lanes>(planes[held].normal);
   Row3 friction{};
-  if constexpr (kRubs) friction = vectors_at<Lanes>(balls.friction.force, m);
+  if constexpr (kRubs) friction = load_vectors<Lanes>(balls.friction.force, m);
   const auto tension = [&](const double* factors) noexcept {
     return tension_of<Lanes, kRubs>(normal, Lanes::load(factors + m), friction);
   };
@@ -330,11 +315,7 @@ template <class Lanes, bool kViscous, bool kRubs>
       find_forces<Lanes, kViscous, kRubs>(pair, term, planes[a], a, balls, m, some, sums[a]);
   const typename Lanes::Row3 normal = every<Lanes>(planes[a].normal);
   Lanes::store(balls.factor + m, forces.factor);
-  if constexpr (kRubs) {
-    Lanes::store(balls.friction.force[0] + m, forces.friction.x);
-    Lanes::store(balls.friction.force[1] + m, forces.friction.y);
-    Lanes::store(balls.friction.force[2] + m, forces.friction.z);
-  }
+  if constexpr (kRubs) store_vectors<Lanes>(balls.friction.force, m, forces.friction);
   if constexpr (kViscous) {
     Lanes::store(balls.viscous_factor + m, forces.viscous);
     works.now_viscous.enter(i, tension_of<Lanes, kRubs>(normal, forces.viscous, forces.friction),

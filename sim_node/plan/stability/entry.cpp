@@ -82,8 +82,8 @@ double step_of(const engine::StateMachine& machine, const engine::LinkState& sta
   return std::min(step, relative_speed(state, reach) * longest);
 }
 
-double longest_step_of(const engine::StateMachine& machine, double rest_length,
-                       const Reach& reach) {
+double farthest_step_of(const engine::StateMachine& machine, double rest_length,
+                        const Reach& reach) {
   double longest = 0.0;
   for (const engine::LinkState& state : machine.states)
     longest = std::max(longest, step_of(machine, state, rest_length, reach));
@@ -102,7 +102,7 @@ class Ways {
         moves_rest_(std::ranges::any_of(
             machine.exits, [](const auto& exit) { return exit.rest != engine::RestRule::kKeep; })),
         reach_(reach),
-        map_(machine, rest_length, longest_step_of(machine, rest_length, reach_of_step), reach),
+        map_(machine, rest_length, farthest_step_of(machine, rest_length, reach_of_step), reach),
         entered_(machine.states.size() + 1),
         carried_(entered_.size()),
         moved_(entered_.size()),
@@ -205,38 +205,31 @@ class Ways {
   /// An angle that goes on beyond a half turn comes back from the other side.
   bool turns_around() const { return possible_.low < 0.0 && std::isfinite(possible_.high); }
 
-  /// From where on an exit surely ends a state whose ends part, in cells so wide that no step passes them [m].
-  double surely_ended_above(std::size_t node, double from) const {
-    const std::vector<Interval>& cells = map_.cells();
-    const double step = step_in(node);
-    double begin = kBoundless;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (cells[i].low < from) continue;
-      if (may_stay(node, i, &Holding::may_fail_lengthening)) {
-        begin = kBoundless;
-        continue;
-      }
-      begin = std::min(begin, cells[i].low);
-      if (cells[i].high - begin >= step) return begin;
-    }
-    return kBoundless;
+  /// True if an angle gets to where it comes back from the other side.
+  bool reaches_fold(const Interval& part) const {
+    return turns_around() && (part.low <= possible_.low || part.high >= possible_.high);
   }
 
-  /// Likewise, where they come nearer.
-  double surely_ended_below(std::size_t node, double from) const {
+  /// From where on an exit surely ends a state on the way out, in cells so wide that no step passes them [m].
+  /// @param from   where the state begins
+  /// @param parts  the ends part; else they come nearer
+  double surely_ended(std::size_t node, double from, bool parts, double step) const {
     const std::vector<Interval>& cells = map_.cells();
-    const double step = step_in(node);
-    double begin = -kBoundless;
-    for (std::size_t i = cells.size(); i-- > 0;) {
-      if (cells[i].high > from) continue;
-      if (may_stay(node, i, &Holding::may_fail_shortening)) {
-        begin = -kBoundless;
+    const auto may_fail = parts ? &Holding::may_fail_lengthening : &Holding::may_fail_shortening;
+    std::optional<double> begin;
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      const std::size_t i = parts ? n : cells.size() - 1 - n;
+      const double near = parts ? cells[i].low : cells[i].high;
+      const double far = parts ? cells[i].high : cells[i].low;
+      if (parts ? near < from : near > from) continue;
+      if (may_stay(node, i, may_fail)) {
+        begin.reset();
         continue;
       }
-      begin = std::max(begin, cells[i].high);
-      if (begin - cells[i].low >= step) return begin;
+      if (!begin) begin = near;
+      if (std::abs(far - *begin) >= step) return *begin;
     }
-    return -kBoundless;
+    return parts ? kBoundless : -kBoundless;
   }
 
   /// Wherever a state may be: as far as the energy carries it, and no exit surely ends it on the way.
@@ -249,11 +242,12 @@ class Ways {
       all.low = std::min(std::max(all.low, possible_.low), began.low);
       all.high = std::max(std::min(all.high, possible_.high), began.high);
     }
-    if (turns_around() && (all.low <= possible_.low || all.high >= possible_.high)) all = possible_;
+    if (reaches_fold(all)) all = possible_;
     carried_[node] = all;
-    all.high = std::min(all.high, surely_ended_above(node, began.high));
-    all.low = std::max(all.low, surely_ended_below(node, began.low));
-    passes_fold_[node] = turns_around() && (all.low <= possible_.low || all.high >= possible_.high);
+    const double step = step_in(node);
+    all.high = std::min(all.high, surely_ended(node, began.high, /*parts=*/true, step));
+    all.low = std::max(all.low, surely_ended(node, began.low, /*parts=*/false, step));
+    passes_fold_[node] = reaches_fold(all);
     if (passes_fold_[node]) all = possible_;
     // Beyond its range no pair is in the state of the start.
     const bool has_range = number(node) == machine_.start && std::isfinite(reach_.range);
